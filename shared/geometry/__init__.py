@@ -1,0 +1,1 @@
+"""Rigid motions, planes and point sets, in NumPy and SciPy alone."""

@@ -1,0 +1,40 @@
+"""Point sets (N, 3) in metres, and the depth images they come from."""
+
+from __future__ import annotations
+
+import numpy as np
+from numpy.typing import NDArray
+
+Array = NDArray[np.float64]
+
+
+def points_from_depth(depth: NDArray[np.generic], intrinsics: Array, depth_scale: float) -> Array:
+    """Return one point per pixel (H*W, 3), row-major, in the camera's optical frame.
+
+    Parameters
+    ----------
+    depth : (H, W) array
+        Distance along the optical axis, in units of `depth_scale`. Zero and
+        non-finite values mean no return and give NaN points.
+    intrinsics : (3, 3) array
+        Pinhole matrix, in pixels.
+    depth_scale : float
+        Metres per unit of `depth`.
+    """
+    height, width = depth.shape
+    z = depth.astype(np.float64) * depth_scale
+    z[~(np.isfinite(z) & (z > 0))] = np.nan
+    u = (np.arange(width) - intrinsics[0, 2]) / intrinsics[0, 0]
+    v = (np.arange(height) - intrinsics[1, 2]) / intrinsics[1, 1]
+    x = (u[None, :] - intrinsics[0, 1] / intrinsics[0, 0] * v[:, None]) * z
+    return np.stack([x, v[:, None] * z, z], axis=-1).reshape(-1, 3)
+
+
+def principal_axes(points: Array) -> tuple[Array, Array]:
+    """Return variances (3,), descending, and axes (3, 3) as right-handed columns."""
+    centred = points - points.mean(axis=0)
+    values, vectors = np.linalg.eigh(centred.T @ centred / max(len(points), 1))
+    vectors = vectors[:, ::-1]
+    if np.linalg.det(vectors) < 0:
+        vectors[:, 2] *= -1
+    return values[::-1].clip(min=0.0), vectors

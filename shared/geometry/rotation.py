@@ -1,0 +1,54 @@
+"""Rotation matrices and quaternions `[x, y, z, w]`."""
+
+from __future__ import annotations
+
+import numpy as np
+from numpy.typing import ArrayLike, NDArray
+from scipy.spatial.transform import Rotation
+
+Matrix = NDArray[np.float64]
+
+
+def quaternion_from_matrix(rotation: Matrix) -> Matrix:
+    """Return unit quaternions (..., 4) with w >= 0 of rotation matrices (..., 3, 3)."""
+    return np.asarray(Rotation.from_matrix(rotation).as_quat(canonical=True))
+
+
+def matrix_from_quaternion(quaternion: ArrayLike) -> Matrix:
+    """Return rotation matrices (..., 3, 3) of quaternions (..., 4), of any length but zero."""
+    return np.asarray(Rotation.from_quat(quaternion).as_matrix())
+
+
+def unit(vector: ArrayLike) -> Matrix:
+    """Return vectors (..., 3) scaled to length 1; a zero vector stays zero."""
+    v = np.asarray(vector, dtype=np.float64)
+    length = np.linalg.norm(v, axis=-1, keepdims=True)
+    return np.divide(v, length, out=np.zeros_like(v), where=length > 0)
+
+
+def any_perpendicular(direction: ArrayLike) -> Matrix:
+    """Return a unit vector (3,) perpendicular to `direction` (3,)."""
+    d = unit(direction)
+    axis = np.zeros(3)
+    axis[np.argmin(np.abs(d))] = 1.0
+    return unit(np.cross(d, axis))
+
+
+def frame_from_z(z_axis: ArrayLike, x_hint: ArrayLike | None = None) -> Matrix:
+    """Return a right-handed rotation (3, 3) whose third column is `z_axis`.
+
+    Parameters
+    ----------
+    z_axis : (3,) array_like
+        Direction of the third axis, of any length but zero.
+    x_hint : (3,) array_like, optional
+        The first axis is this, made perpendicular to `z_axis`; ignored when parallel.
+    """
+    z = unit(z_axis)
+    x = any_perpendicular(z)
+    if x_hint is not None:
+        hint = np.asarray(x_hint, dtype=np.float64)
+        flat = hint - z * (hint @ z)
+        if np.linalg.norm(flat) > 1e-9 * max(np.linalg.norm(hint), 1e-300):
+            x = unit(flat)
+    return np.column_stack([x, np.cross(z, x), z])

@@ -1,0 +1,87 @@
+"""Execution: a grasp in, whether it lifted the object out."""
+
+from __future__ import annotations
+
+from typing import Annotated, Any, Literal, Self
+
+import numpy as np
+from numpy.typing import NDArray
+from pydantic import Field, FiniteFloat, model_validator
+
+from shared.schemas.fields import Points, SuperquadricVector, Vector3
+from shared.schemas.grasp import Pose
+from shared.schemas.route import Route
+from shared.schemas.scene import SupportPlane
+from shared.wire import ArrayField, Message
+
+Outcome = Literal[
+    "lifted",
+    "unreachable",
+    "collision_with_table",
+    "pushed_away",
+    "missed",
+    "slipped",
+]
+
+
+class ExecuteRequest(Message):
+    """A grasp on an object: a mesh, or the primitives that stand for it.
+
+    Everything is in one frame; `plane` says where the table is.
+    """
+
+    pose: Pose
+    width: Annotated[FiniteFloat, Field(ge=0)]
+    primitives: Annotated[tuple[SuperquadricVector, ...], Field(max_length=64)] = ()
+    vertices: Points | None = None
+    """Mesh vertices in metres, in the same frame as the grasp."""
+    faces: Annotated[NDArray[np.int32], ArrayField("int32", ("F", 3))] | None = None
+    plane: SupportPlane | None = None
+    up: Vector3 | None = None
+    gripper: str = "panda"
+    seed: Annotated[int, Field(ge=0, lt=2**32)] = 0
+
+    @model_validator(mode="after")
+    def _one_object(self) -> Self:
+        if (self.vertices is None) != (self.faces is None):
+            raise ValueError("a mesh needs both vertices and faces")
+        if self.vertices is None and not self.primitives:
+            raise ValueError("give a mesh (vertices, faces) or primitives")
+        if self.vertices is not None and self.faces is not None:
+            self._check_mesh(self.vertices, self.faces)
+        if self.plane is None and self.up is None:
+            raise ValueError("give plane or up, so that gravity has a direction")
+        return self
+
+    @staticmethod
+    def _check_mesh(vertices: NDArray[Any], faces: NDArray[Any]) -> None:
+        if len(faces) == 0 or not np.isfinite(vertices).all():
+            raise ValueError("the mesh needs at least one face and finite vertices")
+        if faces.min() < 0 or faces.max() >= len(vertices):
+            raise ValueError(f"faces must index the {len(vertices)} vertices from 0")
+
+
+class Phase(Message):
+    """One step of the motion."""
+
+    name: str
+    simulated_s: float
+    """Simulated time at its end."""
+
+
+class ExecuteResponse(Message):
+    success: bool
+    outcome: Outcome
+    message: str
+    lift_height: float
+    """How far the object rose, in metres."""
+    phases: tuple[Phase, ...]
+
+
+EXECUTE = Route(
+    "execution",
+    "/execute",
+    ExecuteRequest,
+    ExecuteResponse,
+    "Drive the Panda arm to a grasp in PyBullet, close, lift, and say what happened",
+)

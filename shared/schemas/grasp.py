@@ -1,0 +1,132 @@
+"""Grasp proposal and matching: candidates in, the grasps in the region out."""
+
+from __future__ import annotations
+
+from typing import Annotated
+
+import numpy as np
+from numpy.typing import NDArray
+from pydantic import Field, FiniteFloat
+
+from shared.schemas.fields import GraspRows, Labels, Mask, Points, Quaternion, Vector3
+from shared.schemas.primitive import Primitive
+from shared.schemas.route import Nothing, Route
+from shared.schemas.scene import SupportPlane
+from shared.wire import ArrayField, Message
+
+
+class Pose(Message):
+    """Grasp frame: the tool centre point midway between the finger tips.
+
+    +z is the approach direction, +y the closing direction, x completes it.
+    """
+
+    position: Vector3
+    quaternion: Quaternion
+
+
+class Gripper(Message):
+    """A parallel gripper's geometry, metres, in the grasp frame."""
+
+    name: str
+    description: str
+    max_opening: Annotated[FiniteFloat, Field(gt=0)]
+    """Largest distance between the pads."""
+    finger_width: Annotated[FiniteFloat, Field(gt=0)]
+    """Along x."""
+    finger_thickness: Annotated[FiniteFloat, Field(gt=0)]
+    """Of each finger along y, outside the opening."""
+    finger_length: Annotated[FiniteFloat, Field(gt=0)]
+    """From the palm to the tips, along z."""
+    tip_beyond_tcp: Annotated[FiniteFloat, Field(ge=0)]
+    """How far the tips reach past the tool centre point along +z."""
+    palm_size: Vector3
+    """Box of the hand behind the fingers: along x, y, z."""
+
+
+class GripperList(Message):
+    grippers: tuple[Gripper, ...]
+
+
+class ProposeRequest(Message):
+    """An object in its surroundings."""
+
+    points: Points
+    obstacle_points: Points | None = None
+    plane: SupportPlane | None = None
+    up: Vector3 | None = None
+    viewpoint: Vector3 = (0.0, 0.0, 0.0)
+    focus: Mask | None = None
+    """Sample only at these points; the whole object still counts for collisions."""
+    gripper: str = "panda"
+    samples: Annotated[int, Field(ge=1, le=5000)] = 300
+    seed: Annotated[int, Field(ge=0, lt=2**32)] = 0
+
+
+class ProposeResponse(Message):
+    """Collision-free antipodal candidates, best first."""
+
+    grasps: GraspRows
+    considered: int
+    rejected: dict[str, int]
+    """How many hand poses were left out, by reason."""
+
+
+class RegionRequest(Message):
+    """Which points belong to which primitive, and which to the chosen ones?"""
+
+    points: Points
+    primitives: tuple[Primitive, ...]
+    primitive_ids: tuple[int, ...]
+    """The primitives of the grasp region."""
+
+
+class RegionResponse(Message):
+    point_primitive: Labels
+    """Id of the nearest primitive by radial distance (Eq. 5.1), -1 without primitives."""
+    point_region: Mask
+
+
+class SelectRequest(Message):
+    """Which of these grasps hold the region?"""
+
+    points: Points
+    point_region: Mask
+    grasps: GraspRows
+    max_grasps: Annotated[int, Field(ge=0, le=100)] = 10
+
+
+class SelectResponse(Message):
+    """The grasps whose closest object point lies in the region, best first."""
+
+    grasps: GraspRows
+    indices: Annotated[NDArray[np.int32], ArrayField("int32", ("G",))]
+    """Row of each in the request."""
+    outside_region: int
+    """How many candidates held another part."""
+
+
+LIST_GRIPPERS = Route(
+    "grasp_proposal", "/grippers", Nothing, GripperList, "The grippers that are known", "GET"
+)
+PROPOSE = Route(
+    "grasp_proposal",
+    "/propose",
+    ProposeRequest,
+    ProposeResponse,
+    "Propose 6-DOF antipodal grasps that collide with nothing",
+)
+FIND_REGION = Route(
+    "matching",
+    "/region",
+    RegionRequest,
+    RegionResponse,
+    "Assign points to primitives by radial distance",
+)
+SELECT = Route(
+    "matching",
+    "/select",
+    SelectRequest,
+    SelectResponse,
+    "Keep the grasps whose closest object point lies in the region",
+)

@@ -1,0 +1,112 @@
+"""Reading and writing npz archives without trusting them.
+
+`numpy.load` would unpack whatever the archive claims to hold. Here the size
+of every member is known and bounded before a byte of it is unpacked, the
+header of every array is checked against the bytes that are really there, and
+object arrays (pickles) are refused.
+"""
+
+from __future__ import annotations
+
+import io
+import zipfile
+import zlib
+from collections.abc import Mapping
+from typing import Any
+
+import numpy as np
+from numpy.typing import NDArray
+
+from shared.errors import MalformedRequest, PayloadTooLarge
+
+MAX_MEMBERS = 64
+
+
+def read_npz(data: bytes, max_unpacked_bytes: int) -> dict[str, NDArray[Any]]:
+    """Return the arrays of an npz archive by name.
+
+    Parameters
+    ----------
+    data : bytes
+        The archive.
+    max_unpacked_bytes : int
+        Bound on the sum of the unpacked sizes.
+
+    Raises
+    ------
+    MalformedRequest
+        Not a zip archive, truncated, or a member is not a plain numeric array.
+    PayloadTooLarge
+        It would unpack to more than allowed.
+    """
+    try:
+        with zipfile.ZipFile(io.BytesIO(data)) as archive:
+            members = archive.infolist()
+            _check_sizes(members, max_unpacked_bytes)
+            return {
+                member.filename.removesuffix(".npy"): _read_array(member.filename, archive.read(member))
+                for member in members
+            }
+    except (zipfile.BadZipFile, zlib.error, EOFError, OSError, NotImplementedError) as error:
+        raise MalformedRequest(f"the body is not a complete npz archive: {error}") from None
+    except RuntimeError as error:  # zipfile's word for an encrypted member
+        raise MalformedRequest(f"the npz archive cannot be read: {error}") from None
+
+
+def _check_sizes(members: list[zipfile.ZipInfo], max_unpacked_bytes: int) -> None:
+    if len(members) > MAX_MEMBERS:
+        raise PayloadTooLarge(
+            f"the npz archive holds {len(members)} arrays, allowed are {MAX_MEMBERS}",
+            found=len(members),
+            allowed=MAX_MEMBERS,
+        )
+    unpacked = sum(member.file_size for member in members)
+    if unpacked > max_unpacked_bytes:
+        raise PayloadTooLarge(
+            f"the npz archive unpacks to {unpacked} bytes, allowed are {max_unpacked_bytes}",
+            found=unpacked,
+            allowed=max_unpacked_bytes,
+        )
+
+
+def _read_array(name: str, content: bytes) -> NDArray[Any]:
+    stream = io.BytesIO(content)
+    try:
+        version = np.lib.format.read_magic(stream)
+        read_header = (
+            np.lib.format.read_array_header_1_0
+            if version == (1, 0)
+            else np.lib.format.read_array_header_2_0
+        )
+        shape, fortran_order, dtype = read_header(stream)
+    except (ValueError, SyntaxError, RecursionError, MemoryError, TypeError) as error:
+        raise MalformedRequest(f"array {name!r} has no valid npy header: {error}") from None
+    if dtype.hasobject:
+        raise MalformedRequest(
+            f"array {name!r} holds pickled objects; only plain numbers are accepted"
+        )
+    start = stream.tell()
+    count = 1
+    for length in shape:
+        count *= length
+    if min(shape, default=1) < 0 or count * dtype.itemsize != len(content) - start:
+        raise MalformedRequest(
+            f"array {name!r} claims shape {shape} of {dtype}, "
+            f"but holds {len(content) - start} bytes"
+        )
+    flat = np.frombuffer(content, dtype=dtype, offset=start, count=count) if count else np.empty(0, dtype)
+    return flat.reshape(shape, order="F" if fortran_order else "C")
+
+
+def write_npz(arrays: Mapping[str, NDArray[Any]], *, compress: bool = False) -> bytes:
+    """Return an npz archive of `arrays`; same arrays, same bytes."""
+    stream = io.BytesIO()
+    method = zipfile.ZIP_DEFLATED if compress else zipfile.ZIP_STORED
+    with zipfile.ZipFile(stream, "w", method) as archive:
+        for name, array in arrays.items():
+            member = zipfile.ZipInfo(f"{name}.npy")  # a fixed date: no clock in the bytes
+            member.compress_type = method
+            content = io.BytesIO()
+            np.lib.format.write_array(content, np.asarray(array), allow_pickle=False)
+            archive.writestr(member, content.getvalue())
+    return stream.getvalue()
