@@ -66,6 +66,12 @@ class NotFound(SpargeError):
     status = 404
 
 
+class NoSuchPath(NotFound):
+    """The service has no such endpoint."""
+
+    code = "no_such_path"
+
+
 class MethodNotAllowed(SpargeError):
     """The path exists, the method does not."""
 

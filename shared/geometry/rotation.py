@@ -16,14 +16,14 @@ def quaternion_from_matrix(rotation: Matrix) -> Matrix:
 
 def matrix_from_quaternion(quaternion: ArrayLike) -> Matrix:
     """Return rotation matrices (..., 3, 3) of quaternions (..., 4), of any length but zero."""
-    return np.asarray(Rotation.from_quat(quaternion).as_matrix())
+    return np.asarray(Rotation.from_quat(np.asarray(quaternion, dtype=np.float64)).as_matrix())
 
 
 def unit(vector: ArrayLike) -> Matrix:
     """Return vectors (..., 3) scaled to length 1; a zero vector stays zero."""
     v = np.asarray(vector, dtype=np.float64)
     length = np.linalg.norm(v, axis=-1, keepdims=True)
-    return np.divide(v, length, out=np.zeros_like(v), where=length > 0)
+    return np.asarray(np.divide(v, length, out=np.zeros_like(v), where=length > 0))
 
 
 def any_perpendicular(direction: ArrayLike) -> Matrix:
@@ -49,6 +49,6 @@ def frame_from_z(z_axis: ArrayLike, x_hint: ArrayLike | None = None) -> Matrix:
     if x_hint is not None:
         hint = np.asarray(x_hint, dtype=np.float64)
         flat = hint - z * (hint @ z)
-        if np.linalg.norm(flat) > 1e-9 * max(np.linalg.norm(hint), 1e-300):
+        if np.linalg.norm(flat) > 1e-9 * np.linalg.norm(hint):
             x = unit(flat)
     return np.column_stack([x, np.cross(z, x), z])

@@ -70,6 +70,8 @@ class Phase(Message):
 
 
 class ExecuteResponse(Message):
+    """What happened when the arm tried."""
+
     success: bool
     outcome: Outcome
     message: str

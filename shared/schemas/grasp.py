@@ -45,6 +45,8 @@ class Gripper(Message):
 
 
 class GripperList(Message):
+    """All grippers that can be asked for."""
+
     grippers: tuple[Gripper, ...]
 
 
@@ -73,7 +75,7 @@ class ProposeResponse(Message):
 
 
 class RegionRequest(Message):
-    """Which points belong to which primitive, and which to the chosen ones?"""
+    """Asks which points belong to which primitive, and which to the chosen ones."""
 
     points: Points
     primitives: tuple[Primitive, ...]
@@ -82,13 +84,15 @@ class RegionRequest(Message):
 
 
 class RegionResponse(Message):
+    """One entry per point of the request."""
+
     point_primitive: Labels
     """Id of the nearest primitive by radial distance (Eq. 5.1), -1 without primitives."""
     point_region: Mask
 
 
 class SelectRequest(Message):
-    """Which of these grasps hold the region?"""
+    """Asks which of these grasps hold the region."""
 
     points: Points
     point_region: Mask

@@ -66,11 +66,11 @@ class Explanation(Message):
     rules: tuple[RuleTrace, ...]
     """Those that hold and led to the answer."""
     nearest_miss: RuleTrace | None = None
-    """For found = false: the rule and binding that came closest; its failing conditions say by how much."""
+    """For found = false: the rule and binding that came closest, and by how much it failed."""
 
 
 class DecideRequest(Message):
-    """What does this object offer for this task?"""
+    """Asks what this object offers for this task."""
 
     task: Annotated[str, Field(min_length=1, max_length=64)]
     reasoning: Version = "v2"
@@ -115,19 +115,27 @@ class Task(TaskDefinition):
 
 
 class TaskList(Message):
+    """All tasks that can be asked for."""
+
     tasks: tuple[Task, ...]
 
 
 class TaskName(Message):
+    """Which task is meant."""
+
     name: Name
 
 
 class Affordance(Message):
+    """What a part of an object offers."""
+
     name: Name
     description: str
 
 
 class AffordanceList(Message):
+    """All part affordances that rules can find."""
+
     affordances: tuple[Affordance, ...]
 
 

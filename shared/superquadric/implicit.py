@@ -40,4 +40,4 @@ def radial_distance(superquadric: Superquadric, points: Array) -> Array:
     flat = (e2 / 2) * np.logaddexp((2 / e2) * np.log(x), (2 / e2) * np.log(y))
     scale = np.exp((e1 / 2) * np.logaddexp((2 / e1) * flat, (2 / e1) * np.log(z)))
     distance = np.linalg.norm(local, axis=1) * (1 - 1 / scale)
-    return np.maximum(distance, -min(superquadric.semi_axes))
+    return np.asarray(np.maximum(distance, -min(superquadric.semi_axes)))

@@ -43,14 +43,12 @@ def read_npz(data: bytes, max_unpacked_bytes: int) -> dict[str, NDArray[Any]]:
         with zipfile.ZipFile(io.BytesIO(data)) as archive:
             members = archive.infolist()
             _check_sizes(members, max_unpacked_bytes)
-            return {
-                member.filename.removesuffix(".npy"): _read_array(member.filename, archive.read(member))
-                for member in members
-            }
+            contents = {member.filename: archive.read(member) for member in members}
     except (zipfile.BadZipFile, zlib.error, EOFError, OSError, NotImplementedError) as error:
         raise MalformedRequest(f"the body is not a complete npz archive: {error}") from None
     except RuntimeError as error:  # zipfile's word for an encrypted member
         raise MalformedRequest(f"the npz archive cannot be read: {error}") from None
+    return {name.removesuffix(".npy"): _read_array(name, held) for name, held in contents.items()}
 
 
 def _check_sizes(members: list[zipfile.ZipInfo], max_unpacked_bytes: int) -> None:
@@ -94,7 +92,9 @@ def _read_array(name: str, content: bytes) -> NDArray[Any]:
             f"array {name!r} claims shape {shape} of {dtype}, "
             f"but holds {len(content) - start} bytes"
         )
-    flat = np.frombuffer(content, dtype=dtype, offset=start, count=count) if count else np.empty(0, dtype)
+    if count == 0 or dtype.itemsize == 0:
+        return np.zeros(shape, dtype)
+    flat = np.frombuffer(content, dtype=dtype, offset=start)
     return flat.reshape(shape, order="F" if fortran_order else "C")
 
 

@@ -1,0 +1,102 @@
+"""The application that every service is: health, version, metrics, errors, limits."""
+
+from __future__ import annotations
+
+import importlib.metadata
+from collections.abc import Awaitable, Callable
+from contextlib import AbstractAsyncContextManager
+from typing import Literal
+
+from fastapi import FastAPI
+from fastapi.responses import JSONResponse, Response
+from pydantic import BaseModel
+
+from shared.service.context import RequestContext
+from shared.service.envelope import install_error_handlers
+from shared.service.telemetry import Metrics
+from shared.settings import ServiceSettings
+
+Lifespan = Callable[[FastAPI], AbstractAsyncContextManager[None]]
+
+
+class Health(BaseModel):
+    """Whether a service can work, and if not, what it waits for."""
+
+    status: Literal["alive", "ready", "starting", "failed"]
+    service: str
+    details: dict[str, str] = {}
+
+
+class Version(BaseModel):
+    """Which build answers."""
+
+    service: str
+    version: str
+
+
+def installed_version() -> str:
+    """Return the version of the installed distribution."""
+    try:
+        return importlib.metadata.version("sparge")
+    except importlib.metadata.PackageNotFoundError:
+        return "unknown"
+
+
+def create_base(
+    name: str,
+    summary: str,
+    settings: ServiceSettings,
+    *,
+    lifespan: Lifespan,
+    ready: Callable[[], Awaitable[Health]],
+) -> FastAPI:
+    """Return a FastAPI application with what all services share.
+
+    Parameters
+    ----------
+    name : str
+        The service's name, as in its package.
+    summary : str
+        One line for the OpenAPI page.
+    settings : ServiceSettings
+        Limits.
+    lifespan : callable
+        Entered before the first request, left after the last.
+    ready : callable
+        Asked by `/health/ready`; only status `ready` answers 200.
+    """
+    app = FastAPI(
+        title=f"SPaRGE {name}", summary=summary, version=installed_version(), lifespan=lifespan
+    )
+    metrics = Metrics(name)
+    app.state.metrics = metrics
+    app.add_middleware(
+        RequestContext, max_body_bytes=settings.max_body_bytes, observe=metrics.observe
+    )
+    install_error_handlers(app)
+
+    @app.get("/health/live", tags=["operations"], summary="The process answers")
+    async def live() -> Health:
+        return Health(status="alive", service=name)
+
+    @app.get(
+        "/health/ready",
+        tags=["operations"],
+        summary="Warm and able to work",
+        responses={503: {"model": Health, "description": "Not yet, or not any more"}},
+        response_model=Health,
+    )
+    async def is_ready() -> Response:
+        health = await ready()
+        code = 200 if health.status == "ready" else 503
+        return JSONResponse(health.model_dump(), status_code=code)
+
+    @app.get("/version", tags=["operations"], summary="Which build answers")
+    async def version() -> Version:
+        return Version(service=name, version=app.version)
+
+    @app.get("/metrics", tags=["operations"], summary="Prometheus metrics", response_class=Response)
+    async def expose() -> Response:
+        return metrics.expose()
+
+    return app

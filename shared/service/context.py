@@ -1,0 +1,117 @@
+"""What every request passes through first: an id, a size limit, a last line of defence.
+
+Written against ASGI itself, so that it costs microseconds and also sees what
+never reaches a route.
+"""
+
+from __future__ import annotations
+
+import asyncio
+import logging
+import re
+import time
+import uuid
+from collections.abc import Callable
+
+from starlette.datastructures import Headers, MutableHeaders
+from starlette.types import ASGIApp, Message, Receive, Scope, Send
+
+from shared.errors import InternalError, PayloadTooLarge, SpargeError
+from shared.service.envelope import error_response
+from shared.service.request_id import REQUEST_ID_HEADER, request_id
+
+_VALID_ID = re.compile(r"[A-Za-z0-9._-]{1,64}")
+_DRAIN_FACTOR, _DRAIN_SECONDS = 8, 10.0
+
+Observe = Callable[[Scope, int, float], None]
+log = logging.getLogger("sparge")
+
+
+class RequestContext:
+    """ASGI middleware: request id, body limit, timing, and no traceback ever."""
+
+    def __init__(self, app: ASGIApp, *, max_body_bytes: int, observe: Observe) -> None:
+        self._app = app
+        self._max_body_bytes = max_body_bytes
+        self._observe = observe
+
+    async def __call__(self, scope: Scope, receive: Receive, send: Send) -> None:
+        if scope["type"] != "http":
+            await self._app(scope, receive, send)
+            return
+        headers = Headers(scope=scope)
+        given = headers.get(REQUEST_ID_HEADER, "")
+        identifier = given if _VALID_ID.fullmatch(given) else uuid.uuid4().hex
+        token = request_id.set(identifier)
+        started, status, answering = time.perf_counter(), 500, False
+
+        async def send_with_id(message: Message) -> None:
+            nonlocal status, answering
+            if message["type"] == "http.response.start":
+                status, answering = message["status"], True
+                MutableHeaders(scope=message)[REQUEST_ID_HEADER] = identifier
+            await send(message)
+
+        try:
+            limited = _Limited(receive, headers, self._max_body_bytes)
+            await limited.check_declared_length()
+            await self._app(scope, limited, send_with_id)
+        except Exception as error:
+            if not isinstance(error, SpargeError):
+                log.exception("unhandled error in request %s", identifier)
+                error = InternalError("an internal error; the log has it under this request id")
+            if not answering:
+                await error_response(error, identifier)(scope, receive, send_with_id)
+        finally:
+            self._observe(scope, status, time.perf_counter() - started)
+            request_id.reset(token)
+
+
+class _Limited:
+    """A receive channel that counts the body."""
+
+    def __init__(self, receive: Receive, headers: Headers, limit: int) -> None:
+        self._receive = receive
+        self._headers = headers
+        self._limit = limit
+        self._seen = 0
+
+    async def check_declared_length(self) -> None:
+        declared = self._headers.get("content-length", "")
+        if declared.isdigit() and int(declared) > self._limit:
+            if "expect" not in self._headers:
+                await self._drain()
+            raise self._too_large(int(declared))
+
+    async def __call__(self) -> Message:
+        message = await self._receive()
+        if message["type"] == "http.request":
+            self._seen += len(message.get("body", b""))
+            if self._seen > self._limit:
+                await self._drain()
+                raise self._too_large(self._seen)
+        return message
+
+    async def _drain(self) -> None:
+        """Take the rest of the body and forget it, within bounds.
+
+        A client that is cut off in mid-upload sees a broken connection instead
+        of the answer.
+        """
+        seen = 0
+        try:
+            async with asyncio.timeout(_DRAIN_SECONDS):
+                while seen < _DRAIN_FACTOR * self._limit:
+                    message = await self._receive()
+                    seen += len(message.get("body", b""))
+                    if message["type"] != "http.request" or not message.get("more_body"):
+                        return
+        except TimeoutError:
+            return
+
+    def _too_large(self, found: int) -> PayloadTooLarge:
+        return PayloadTooLarge(
+            f"the body is larger than the {self._limit} bytes accepted here",
+            found=found,
+            allowed=self._limit,
+        )

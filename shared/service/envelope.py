@@ -1,0 +1,70 @@
+"""One error envelope for everything that can go wrong."""
+
+from __future__ import annotations
+
+from fastapi import FastAPI, Request
+from fastapi.exceptions import RequestValidationError
+from fastapi.responses import JSONResponse, Response
+from pydantic import BaseModel
+from starlette.exceptions import HTTPException
+
+from shared.errors import (
+    InvalidInput,
+    MalformedRequest,
+    MethodNotAllowed,
+    NoSuchPath,
+    SpargeError,
+)
+from shared.service.request_id import request_id
+
+
+class ErrorBody(BaseModel):
+    """What went wrong."""
+
+    code: str
+    message: str
+    details: dict[str, object]
+    request_id: str
+
+
+class ErrorEnvelope(BaseModel):
+    """The body of every error answer of every service."""
+
+    error: ErrorBody
+
+
+def error_response(error: SpargeError, request_id: str) -> Response:
+    """Return the contract's answer for `error`."""
+    headers = {} if error.retry_after_s is None else {"Retry-After": str(error.retry_after_s)}
+    return JSONResponse(error.envelope(request_id), status_code=error.status, headers=headers)
+
+
+def install_error_handlers(app: FastAPI) -> None:
+    """Answer every error that a route raises with the envelope."""
+
+    @app.exception_handler(SpargeError)
+    async def known(_: Request, error: SpargeError) -> Response:
+        return error_response(error, request_id.get())
+
+    @app.exception_handler(RequestValidationError)
+    async def unvalidated(_: Request, error: RequestValidationError) -> Response:
+        problems = [
+            {"field": ".".join(map(str, each["loc"])), "problem": each["msg"]}
+            for each in error.errors()
+        ]
+        shown = "; ".join(f"{each['field']}: {each['problem']}" for each in problems[:5])
+        return error_response(
+            InvalidInput(f"the request is not valid: {shown}", fields=problems), request_id.get()
+        )
+
+    @app.exception_handler(HTTPException)
+    async def plain(request: Request, error: HTTPException) -> Response:
+        place = f"{request.method} {request.url.path}"
+        translated: SpargeError
+        if error.status_code == 404:
+            translated = NoSuchPath(f"there is no {place} here", path=request.url.path)
+        elif error.status_code == 405:
+            translated = MethodNotAllowed(f"{place} is not possible", method=request.method)
+        else:
+            translated = MalformedRequest(str(error.detail))
+        return error_response(translated, request_id.get())

@@ -1,0 +1,88 @@
+"""The OpenAPI page of routes that read and write JSON and npz."""
+
+from __future__ import annotations
+
+from collections.abc import Sequence
+from typing import Any
+
+from fastapi import FastAPI
+from pydantic import BaseModel
+from pydantic.json_schema import models_json_schema
+
+from shared.schemas.route import Route
+from shared.service.envelope import ErrorEnvelope
+from shared.wire import JSON, NPZ, Message
+
+_ERRORS = {
+    "400": "The body cannot be parsed",
+    "413": "The body is too large",
+    "415": "The content type is not read here",
+    "422": "Parsed, but not valid: says which field, what was found, what is allowed",
+    "503": "Not ready; Retry-After says when to ask again",
+}
+
+
+def describe(app: FastAPI, routes: Sequence[Route[Any, Any]]) -> None:
+    """Make `app`'s OpenAPI document tell the truth about `routes`."""
+    plain = app.openapi
+
+    def openapi() -> dict[str, Any]:
+        if app.openapi_schema is None:
+            document = plain()
+            add_models(document, [m for r in routes for m in (r.request, r.response)])
+            for route in routes:
+                operation = document["paths"][route.path][route.method.lower()]
+                if route.method == "POST":
+                    operation["requestBody"] = {"required": True, "content": content(route.request)}
+                    operation.pop("parameters", None)
+                else:
+                    operation["parameters"] = _path_parameters(route)
+                operation["responses"] = {
+                    "200": {"description": "The answer", "content": content(route.response)},
+                    **error_responses(),
+                }
+            app.openapi_schema = document
+        return app.openapi_schema
+
+    app.openapi = openapi  # type: ignore[method-assign]  # FastAPI's documented extension point
+
+
+def add_models(document: dict[str, Any], models: Sequence[type[BaseModel]]) -> None:
+    """Add the JSON schemas of `models` to the document's components."""
+    wanted = [(model, "validation") for model in dict.fromkeys([*models, ErrorEnvelope])]
+    _, definitions = models_json_schema(
+        wanted,  # type: ignore[arg-type]  # a list of (model, mode) pairs
+        ref_template="#/components/schemas/{model}",
+    )
+    schemas = document.setdefault("components", {}).setdefault("schemas", {})
+    schemas.update(definitions["$defs"])
+
+
+def content(message: type[Message]) -> dict[str, Any]:
+    """Return the media types of a message: JSON by schema, npz by its arrays."""
+    arrays = ", ".join(message.array_fields()) or "none"
+    return {
+        JSON: {"schema": {"$ref": f"#/components/schemas/{message.__name__}"}},
+        NPZ: {
+            "schema": {
+                "type": "string",
+                "format": "binary",
+                "description": f"arrays: {arrays}; everything else as UTF-8 JSON in `message`",
+            }
+        },
+    }
+
+
+def error_responses(codes: Sequence[str] = tuple(_ERRORS)) -> dict[str, Any]:
+    """Return the error answers, all of them the one envelope."""
+    envelope = {JSON: {"schema": {"$ref": "#/components/schemas/ErrorEnvelope"}}}
+    return {code: {"description": _ERRORS[code], "content": envelope} for code in codes}
+
+
+def _path_parameters(route: Route[Any, Any]) -> list[dict[str, Any]]:
+    properties = route.request.model_json_schema().get("properties", {})
+    return [
+        {"name": name, "in": "path", "required": True, "schema": schema}
+        for name, schema in properties.items()
+        if f"{{{name}}}" in route.path
+    ]
