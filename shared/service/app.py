@@ -2,7 +2,6 @@
 
 from __future__ import annotations
 
-import importlib.metadata
 from collections.abc import Awaitable, Callable
 from contextlib import AbstractAsyncContextManager
 from typing import Literal
@@ -11,6 +10,7 @@ from fastapi import FastAPI
 from fastapi.responses import JSONResponse, Response
 from pydantic import BaseModel
 
+from shared import __version__
 from shared.service.context import RequestContext
 from shared.service.envelope import install_error_handlers
 from shared.service.telemetry import Metrics
@@ -32,14 +32,6 @@ class Version(BaseModel):
 
     service: str
     version: str
-
-
-def installed_version() -> str:
-    """Return the version of the installed distribution."""
-    try:
-        return importlib.metadata.version("sparge")
-    except importlib.metadata.PackageNotFoundError:
-        return "unknown"
 
 
 def create_base(
@@ -66,7 +58,7 @@ def create_base(
         Asked by `/health/ready`; only status `ready` answers 200.
     """
     app = FastAPI(
-        title=f"SPaRGE {name}", summary=summary, version=installed_version(), lifespan=lifespan
+        title=f"SPaRGE {name}", summary=summary, version=__version__, lifespan=lifespan
     )
     metrics = Metrics(name)
     app.state.metrics = metrics
