@@ -57,9 +57,7 @@ def create_base(
     ready : callable
         Asked by `/health/ready`; only status `ready` answers 200.
     """
-    app = FastAPI(
-        title=f"SPaRGE {name}", summary=summary, version=__version__, lifespan=lifespan
-    )
+    app = FastAPI(title=f"SPaRGE {name}", summary=summary, version=__version__, lifespan=lifespan)
     metrics = Metrics(name)
     app.state.metrics = metrics
     app.add_middleware(

@@ -88,7 +88,8 @@ class _Limited:
         if message["type"] == "http.request":
             self._seen += len(message.get("body", b""))
             if self._seen > self._limit:
-                await self._drain()
+                if message.get("more_body"):
+                    await self._drain()
                 raise self._too_large(self._seen)
         return message
 

@@ -4,22 +4,21 @@ from __future__ import annotations
 
 import asyncio
 import logging
-from collections.abc import AsyncIterator, Callable, Sequence
+from collections.abc import AsyncIterator, Awaitable, Callable, Sequence
 from contextlib import asynccontextmanager
 from dataclasses import dataclass
 from typing import Any, Generic, TypeVar
 
-from fastapi import FastAPI, Request
-from fastapi.responses import Response
+from fastapi import FastAPI
 from starlette.concurrency import run_in_threadpool
 
 from shared.errors import StageUnavailable
 from shared.schemas.route import Route
 from shared.service.app import Health, create_base
 from shared.service.openapi import describe
+from shared.service.serve import serve
 from shared.settings import ServiceSettings
-from shared.wire import JSON, NPZ, Message, decode, encode
-from shared.wire.codec import validate
+from shared.wire import Message
 
 In = TypeVar("In", bound=Message)
 Out = TypeVar("Out", bound=Message)
@@ -43,7 +42,7 @@ def bind(route: Route[In, Out], handler: Callable[[In], Out]) -> Binding[In, Out
 class WarmUp:
     """Runs a stage's warm-up once, in the background, and remembers how it went."""
 
-    def __init__(self, service: str, work: Callable[[], None] | None) -> None:
+    def __init__(self, service: str, work: Callable[[], object] | None) -> None:
         self._service = service
         self._work = work
         self._health = Health(status="starting", service=service)
@@ -78,8 +77,8 @@ def create_service(
     settings: ServiceSettings,
     handlers: Sequence[Binding[Any, Any]],
     *,
-    warm_up: Callable[[], None] | None = None,
-    close: Callable[[], None] | None = None,
+    warm_up: Callable[[], object] | None = None,
+    close: Callable[[], object] | None = None,
 ) -> FastAPI:
     """Return the application of one stage.
 
@@ -111,41 +110,14 @@ def create_service(
 
     app = create_base(name, summary, settings, lifespan=lifespan, ready=warm.health)
     for binding in handlers:
-        _serve(app, binding, settings, warm)
+        serve(app, binding.route, _in_thread(binding.handler, warm), settings)
     describe(app, [binding.route for binding in handlers])
     return app
 
 
-def _serve(
-    app: FastAPI, binding: Binding[Any, Any], settings: ServiceSettings, warm: WarmUp
-) -> None:
-    route = binding.route
-
-    def answer(body: bytes, media_type: str, path: dict[str, Any], accept: str) -> Response:
-        if route.method == "POST":
-            request = decode(route.request, body, media_type, settings.max_unpacked_bytes)
-        else:
-            request = validate(route.request, path)
-        chosen = NPZ if NPZ in accept else JSON
-        return Response(encode(binding.handler(request), chosen), media_type=chosen)
-
-    async def endpoint(request: Request) -> Response:
+def _in_thread(handler: Callable[[In], Out], warm: WarmUp) -> Callable[[In], Awaitable[Out]]:
+    async def answer(request: In) -> Out:
         warm.require()
-        return await run_in_threadpool(
-            answer,
-            await request.body(),
-            request.headers.get("content-type", JSON),
-            dict(request.path_params),
-            request.headers.get("accept", JSON),
-        )
+        return await run_in_threadpool(handler, request)
 
-    app.add_api_route(
-        route.path,
-        endpoint,
-        methods=[route.method],
-        summary=route.summary,
-        name=f"{route.method} {route.path}",
-        operation_id=f"{route.method.lower()}_{route.path.strip('/').replace('/', '_')}",
-        response_class=Response,
-        include_in_schema=True,
-    )
+    return answer

@@ -39,5 +39,6 @@ def radial_distance(superquadric: Superquadric, points: Array) -> Array:
     # F^(e1/2) in logarithms, so that high powers neither overflow nor vanish.
     flat = (e2 / 2) * np.logaddexp((2 / e2) * np.log(x), (2 / e2) * np.log(y))
     scale = np.exp((e1 / 2) * np.logaddexp((2 / e1) * flat, (2 / e1) * np.log(z)))
-    distance = np.linalg.norm(local, axis=1) * (1 - 1 / scale)
-    return np.asarray(np.maximum(distance, -min(superquadric.semi_axes)))
+    floor = min(superquadric.semi_axes)
+    length = np.maximum(np.linalg.norm(local, axis=1), _TINY * floor)
+    return np.asarray(np.maximum(length * (1 - 1 / scale), -floor))

@@ -45,8 +45,8 @@ class ArrayField:
         except (ValueError, TypeError):
             raise PydanticCustomError("array", "is not a regular array of numbers") from None
         wanted = np.dtype(self.dtype) if self.dtype else None
-        if array.size == 0 and array.dtype.kind == "f" and wanted is not None:
-            array = array.astype(wanted)  # an empty JSON list carries no type
+        if array.shape == (0,) and array.dtype.kind == "f":
+            array = self._empty()  # an empty JSON list carries neither type nor shape
         kinds = _ACCEPTED_KINDS[wanted.kind] if wanted is not None else "fiu"
         if array.dtype.kind not in kinds:
             raise PydanticCustomError(
@@ -62,6 +62,10 @@ class ArrayField:
             array = array.view()
             array.flags.writeable = False
         return array
+
+    def _empty(self) -> NDArray[Any]:
+        lengths = [0 if isinstance(length, str) else length for length in self.shape]
+        return np.empty(lengths, self.dtype or "float64")
 
     def _check_shape(self, array: NDArray[Any]) -> None:
         fits = len(array.shape) == len(self.shape) and all(

@@ -1,0 +1,33 @@
+# Two commands matter: `make run` and `make test`. `make help` lists the rest.
+.DEFAULT_GOAL := help
+.PHONY: help setup run serve test check lock clean
+
+SAMPLE ?= experiments/samples/saucepan.npz
+TASK ?= cooking
+PICTURE ?= out/grasp.png
+
+help:  ## List the targets
+	@grep -hE '^[a-z-]+:.*##' $(MAKEFILE_LIST) | sed -E 's/:.*## /\t/' | expand -t 12
+
+setup:  ## System libraries and .venv from the hashed lock
+	@./setup.sh
+
+run: setup  ## The main job on a bundled view: region, grasps, explanation, timings, a picture
+	@.venv/bin/sparge grasp $(SAMPLE) --task $(TASK) --picture $(PICTURE)
+
+serve: setup  ## The embedded backend on http://127.0.0.1:8000
+	@.venv/bin/sparge serve
+
+test: setup  ## All tests
+	@.venv/bin/python -m pytest
+
+check: setup  ## ruff and mypy --strict
+	@.venv/bin/ruff check .
+	@.venv/bin/ruff format --check .
+	@.venv/bin/mypy
+
+lock: setup  ## Write the dependency locks anew from pyproject.toml
+	@docker/lock.sh
+
+clean:  ## Remove what make made
+	rm -rf .venv out results .mypy_cache .ruff_cache .pytest_cache .hypothesis

@@ -1,0 +1,1 @@
+"""One package per service; none imports another. `services.wiring` puts them together."""

@@ -1,0 +1,129 @@
+"""`sparge grasp` and `sparge serve`."""
+
+from __future__ import annotations
+
+import sys
+from enum import StrEnum
+from pathlib import Path
+from typing import Annotated
+
+import typer
+from rich.console import Console
+
+from shared.errors import SpargeError
+
+app = typer.Typer(
+    help="Task-specific grasps on unknown objects from one depth view.",
+    no_args_is_help=True,
+    pretty_exceptions_enable=False,
+)
+
+
+class Reasoning(StrEnum):
+    """Which version of the reasoning decides."""
+
+    v1 = "v1"
+    v2 = "v2"
+
+
+class Input(StrEnum):
+    """What the points show."""
+
+    scene = "scene"
+    object = "object"
+
+
+def main() -> None:
+    """Run the command; an error of the tree ends it with one line and status 1."""
+    try:
+        app()
+    except SpargeError as error:
+        Console(stderr=True).print(f"[red]{error.code}[/red]: {error.message}", highlight=False)
+        sys.exit(1)
+
+
+@app.command()
+def grasp(
+    file: Annotated[
+        Path, typer.Argument(exists=True, dir_okay=False, help=".npz, .ply, .pcd, .xyz or .png")
+    ],
+    task: Annotated[str, typer.Option(help="What the object is for: pouring, hammering, ...")],
+    reasoning: Annotated[Reasoning, typer.Option(help="v1: rule per task; v2: affordances")] = (
+        Reasoning.v2
+    ),
+    kind: Annotated[
+        Input, typer.Option("--input", help="scene: find the object first")
+    ] = Input.scene,
+    gripper: Annotated[str, typer.Option(help="A name from GET /grippers")] = "panda",
+    max_grasps: Annotated[int, typer.Option(min=0, max=100)] = 5,
+    seed: Annotated[int, typer.Option(min=0)] = 0,
+    viewpoint: Annotated[str, typer.Option(help="Sensor position, as [x, y, z]")] = "[0, 0, 0]",
+    intrinsics: Annotated[
+        str | None, typer.Option(help="3x3 pinhole matrix as JSON, for a PNG")
+    ] = None,
+    depth_scale: Annotated[float | None, typer.Option(help="Metres per unit of depth")] = None,
+    picture: Annotated[Path | None, typer.Option(help="Write a PNG of the answer here")] = None,
+    as_json: Annotated[bool, typer.Option("--json", help="Print the JSON answer only")] = False,
+    url: Annotated[
+        str | None, typer.Option(help="Ask this backend instead of starting one")
+    ] = None,
+) -> None:
+    """Find where and how to grasp the object in FILE for a task."""
+    from services.cli.ask import Question, ask
+    from services.cli.show import show
+
+    console = Console(stderr=True)
+    question = Question(
+        file=file,
+        fields={
+            "task": task,
+            "reasoning": reasoning.value,
+            "input": kind.value,
+            "gripper": gripper,
+            "max_grasps": str(max_grasps),
+            "seed": str(seed),
+            "viewpoint": viewpoint,
+            **({"intrinsics": intrinsics} if intrinsics is not None else {}),
+            **({"depth_scale": str(depth_scale)} if depth_scale is not None else {}),
+        },
+    )
+    answered = ask(question, url, console)
+    if as_json:
+        print(answered.answer.model_dump_json(indent=2))
+    else:
+        show(answered.answer, Console())
+    if picture is not None:
+        from services.cli.picture import draw_answer
+
+        points, assigned, region = answered.object_cloud()
+        answer = answered.answer
+        draw_answer(
+            picture,
+            points,
+            assigned,
+            region,
+            answer.primitives,
+            answered.grasps,
+            answer.scene.up,
+            f"{file.stem}: {answer.task}",
+        )
+        console.print(f"picture: {picture}", highlight=False)
+
+
+@app.command()
+def serve(
+    host: Annotated[str, typer.Option(help="Address to listen on")] = "127.0.0.1",
+    port: Annotated[int, typer.Option(min=0, max=65535)] = 8000,
+    log_level: Annotated[str, typer.Option(help="debug, info, warning or error")] = "info",
+) -> None:
+    """Serve the backend; stages without a URL in the environment run in this process."""
+    import uvicorn
+
+    uvicorn.run(
+        "services.wiring:create_app",
+        factory=True,
+        host=host,
+        port=port,
+        log_level=log_level,
+        timeout_graceful_shutdown=5,
+    )

@@ -1,0 +1,69 @@
+"""The answer on a terminal."""
+
+from __future__ import annotations
+
+from rich import box
+from rich.console import Console
+from rich.table import Table
+
+from shared.schemas.answer import GraspAnswer
+
+
+def show(answer: GraspAnswer, console: Console) -> None:
+    """Print region, primitives, grasps, explanation and timings."""
+    _headline(answer, console)
+    console.print(_primitives(answer))
+    if answer.grasps:
+        console.print(_grasps(answer))
+    if answer.reason is not None:
+        console.print(
+            f"[yellow]{answer.reason.code}[/yellow]: {answer.reason.message}", highlight=False
+        )
+    if answer.explanation is not None:
+        console.print("[bold]Why[/bold]")
+        console.print(answer.explanation.text, highlight=False)
+    spent = "  ".join(f"{name} {value:.0f}" for name, value in answer.timings_ms.items())
+    console.print(f"[bold]Time[/bold] (ms)  {spent}", highlight=False)
+
+
+def _headline(answer: GraspAnswer, console: Console) -> None:
+    if answer.region is None:
+        text = "no part of this object fits"
+    else:
+        parts = ", ".join(map(str, answer.region.primitive_ids))
+        label = f" ({answer.region.affordance})" if answer.region.affordance else ""
+        text = f"hold part {parts}{label}, confidence {answer.region.confidence:.2f}"
+    console.print(f"[bold]{answer.task}[/bold], {answer.reasoning}: {text}", highlight=False)
+
+
+def _primitives(answer: GraspAnswer) -> Table:
+    table = Table(title="Parts", title_justify="left", box=box.SIMPLE_HEAD)
+    held = answer.region.primitive_ids if answer.region else ()
+    for name in ("part", "shape", "extents (mm)", "residual (mm)", "affordances", ""):
+        table.add_column(name)
+    for each in answer.primitives:
+        table.add_row(
+            str(each.id),
+            f"{each.shape_class} ({each.shape_probability:.2f})",
+            " x ".join(f"{1e3 * extent:.0f}" for extent in each.full_extents),
+            f"{each.residual_mm:.1f}",
+            ", ".join(each.labels),
+            "[green]hold[/green]" if each.id in held else "",
+        )
+    return table
+
+
+def _grasps(answer: GraspAnswer) -> Table:
+    title = f"Grasps, frame {answer.frame_id}, gripper {answer.gripper}"
+    table = Table(title=title, title_justify="left", box=box.SIMPLE_HEAD)
+    for name in ("#", "position (m)", "quaternion xyzw", "width (mm)", "score"):
+        table.add_column(name)
+    for number, each in enumerate(answer.grasps):
+        table.add_row(
+            str(number),
+            " ".join(f"{value:+.3f}" for value in each.pose.position),
+            " ".join(f"{value:+.3f}" for value in each.pose.quaternion),
+            f"{1e3 * each.width:.0f}",
+            f"{each.score:.2f}",
+        )
+    return table

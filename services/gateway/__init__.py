@@ -1,0 +1,1 @@
+"""The public face: POST /grasp chains the stages and answers by the contract."""

@@ -1,0 +1,114 @@
+"""What the stages found -> the contract's answer, as JSON or npz."""
+
+from __future__ import annotations
+
+import numpy as np
+from numpy.typing import NDArray
+
+from services.gateway.pipeline import Outcome
+from services.gateway.request import GraspRequest
+from services.gateway.settings import GatewaySettings
+from shared.geometry.rotation import matrix_from_quaternion
+from shared.schemas.answer import Grasp, GraspAnswer, LabelledPrimitive, Scene
+from shared.schemas.grasp import Pose
+from shared.schemas.task import Reason
+from shared.wire.npz import write_npz
+
+
+def compose(
+    outcome: Outcome,
+    request: GraspRequest,
+    settings: GatewaySettings,
+    request_id: str,
+    timings_ms: dict[str, float],
+) -> GraspAnswer:
+    """Return the JSON answer."""
+    parameters, scene, decision = request.parameters, outcome.scene, outcome.decision
+    up = np.asarray(scene.up)
+    return GraspAnswer(
+        request_id=request_id,
+        task=parameters.task,
+        reasoning=parameters.reasoning,
+        rule_set=settings.rule_set,
+        gripper=parameters.gripper,
+        seed=parameters.seed,
+        frame_id=parameters.frame_id,
+        found=decision.found,
+        reason=_reason(outcome, parameters.max_grasps),
+        region=decision.region,
+        alternatives=decision.alternatives,
+        primitives=tuple(
+            LabelledPrimitive(**dict(each), labels=decision.labels.get(each.id, ()))
+            for each in outcome.recovered.primitives
+        ),
+        grasps=tuple(_grasp(row, up, settings) for row in outcome.grasps),
+        explanation=decision.explanation,
+        scene=Scene(
+            plane=scene.plane,
+            up=scene.up,
+            object_points=len(scene.object_points),
+            clusters=scene.clusters,
+            dropped=scene.dropped,
+            removed_as_overlap=outcome.recovered.removed_as_overlap,
+            candidates=outcome.proposed.considered if outcome.proposed else 0,
+            rejected=outcome.proposed.rejected if outcome.proposed else {},
+        ),
+        timings_ms={name: round(spent, 3) for name, spent in timings_ms.items()},
+    )
+
+
+def to_npz(answer: GraspAnswer, outcome: Outcome) -> bytes:
+    """Return the contract's npz: per-point arrays of the INPUT, primitives, grasps, report."""
+    scene, assigned = outcome.scene, outcome.assigned
+    point_primitive = np.full(scene.input_points, -1, dtype=np.int16)
+    point_region = np.zeros(scene.input_points, dtype=np.bool_)
+    point_primitive[scene.object_indices] = assigned.point_primitive
+    point_region[scene.object_indices] = assigned.point_region
+    return write_npz(
+        {
+            "point_primitive": point_primitive,
+            "point_region": point_region,
+            "primitives": np.array([p.parameters for p in answer.primitives]).reshape(-1, 12),
+            "grasps": outcome.grasps,
+            "report": np.frombuffer(answer.model_dump_json().encode(), dtype=np.uint8),
+        }
+    )
+
+
+def _grasp(row: NDArray[np.float64], up: NDArray[np.float64], settings: GatewaySettings) -> Grasp:
+    position, quaternion, width, score = row[:3], row[3:7], row[7], row[8]
+    approach = matrix_from_quaternion(quaternion)[:, 2]
+    before = position - settings.approach_distance * approach
+    after = position + settings.retreat_distance * up
+    return Grasp(
+        pose=_pose(position, quaternion),
+        pregrasp=_pose(before, quaternion),
+        retreat=_pose(after, quaternion),
+        width=float(width),
+        score=float(np.clip(score, 0, 1)),
+    )
+
+
+def _pose(position: NDArray[np.float64], quaternion: NDArray[np.float64]) -> Pose:
+    return Pose(position=tuple(position.tolist()), quaternion=tuple(quaternion.tolist()))
+
+
+def _reason(outcome: Outcome, max_grasps: int) -> Reason | None:
+    """Say why the answer is empty; None when it is not."""
+    if not outcome.decision.found:
+        return outcome.decision.reason
+    if len(outcome.grasps):
+        return None
+    if max_grasps == 0:
+        return Reason(code="no_grasps_requested", message="max_grasps is 0: only the region")
+    if outcome.proposed is None:
+        return Reason(
+            code="region_not_visible",
+            message="the part to hold is known, but no visible point of the object lies on it",
+        )
+    rejected = ", ".join(f"{count} {why}" for why, count in outcome.proposed.rejected.items())
+    return Reason(
+        code="no_grasp_in_region",
+        message=f"none of {outcome.proposed.considered} hand poses holds the region"
+        + (f"; left out: {rejected}" if rejected else ""),
+    )

@@ -1,0 +1,180 @@
+"""The gateway's application: the endpoints of the public contract."""
+
+from __future__ import annotations
+
+import asyncio
+import time
+from collections.abc import AsyncIterator, Awaitable, Callable, Mapping
+from contextlib import asynccontextmanager
+from typing import Any
+
+import httpx
+from fastapi import FastAPI, Request
+from fastapi.responses import Response
+from starlette.concurrency import run_in_threadpool
+from starlette.datastructures import UploadFile
+
+from services.gateway import answer
+from services.gateway import request as requests
+from services.gateway.openapi import describe_grasp
+from services.gateway.pipeline import Pipeline
+from services.gateway.settings import STAGES, GatewaySettings
+from shared.errors import InvalidInput, UnsupportedMediaType
+from shared.schemas.execution import EXECUTE
+from shared.schemas.grasp import LIST_GRIPPERS
+from shared.schemas.route import Request as In
+from shared.schemas.route import Response as Out
+from shared.schemas.route import Route
+from shared.schemas.task import ADD_TASK, DELETE_TASK, LIST_AFFORDANCES, LIST_TASKS
+from shared.service import StageClient
+from shared.service.app import Health, create_base
+from shared.service.openapi import describe
+from shared.service.request_id import request_id
+from shared.service.serve import serve
+from shared.wire import JSON, NPZ
+
+FORM = "multipart/form-data"
+_HEALTH_TIMEOUT_S = 5.0
+_PASSED_ON: tuple[Route[Any, Any], ...] = (
+    LIST_TASKS,
+    ADD_TASK,
+    DELETE_TASK,
+    LIST_AFFORDANCES,
+    LIST_GRIPPERS,
+    EXECUTE,
+)
+
+
+def create_app(
+    settings: GatewaySettings | None = None,
+    transports: Mapping[str, httpx.AsyncBaseTransport] | None = None,
+) -> FastAPI:
+    """Return the gateway.
+
+    Parameters
+    ----------
+    settings : GatewaySettings, optional
+        Read from the environment when not given.
+    transports : mapping, optional
+        How to reach stages that have no URL, by name; the composition root
+        gives in-process ones.
+
+    Raises
+    ------
+    ValueError
+        A stage has neither a URL nor a transport.
+    """
+    settings = settings or GatewaySettings()
+    clients = _connect(settings, transports or {})
+    stages = {name: StageClient(name, http) for name, http in clients.items()}
+    pipeline = Pipeline(stages, settings)
+
+    @asynccontextmanager
+    async def lifespan(_: FastAPI) -> AsyncIterator[None]:
+        try:
+            yield
+        finally:
+            for http in clients.values():
+                await http.aclose()
+
+    async def ready() -> Health:
+        all_health = await asyncio.gather(
+            *(stage.health(_HEALTH_TIMEOUT_S) for stage in stages.values())
+        )
+        waiting = {
+            name: health.details.get("error", health.status)
+            for name, health in zip(stages, all_health, strict=True)
+            if health.status != "ready"
+        }
+        return Health(status="starting" if waiting else "ready", service="gateway", details=waiting)
+
+    app = create_base(
+        "gateway",
+        "Where and how to grasp an object for a task, and the logic behind it",
+        settings,
+        lifespan=lifespan,
+        ready=ready,
+    )
+
+    @app.post("/grasp", operation_id="post_grasp", response_class=Response)
+    async def grasp(request: Request) -> Response:
+        started = time.perf_counter()
+        parsed = await _parse(request, settings)
+        parsing_ms = 1e3 * (time.perf_counter() - started)
+        outcome = await pipeline.run(parsed)
+        timings_ms = {
+            "parsing": parsing_ms,
+            **outcome.timings_ms,
+            "total": 1e3 * (time.perf_counter() - started),
+        }
+        composed = answer.compose(outcome, parsed, settings, request_id.get(), timings_ms)
+        if NPZ in request.headers.get("accept", JSON):
+            body = await run_in_threadpool(answer.to_npz, composed, outcome)
+            return Response(body, media_type=NPZ)
+        return Response(composed.model_dump_json(), media_type=JSON)
+
+    for route in _PASSED_ON:
+        serve(app, route, _forward(stages[route.service], route, settings), settings)
+    describe(app, _PASSED_ON)
+    describe_grasp(app)
+    return app
+
+
+def _connect(
+    settings: GatewaySettings, transports: Mapping[str, httpx.AsyncBaseTransport]
+) -> dict[str, httpx.AsyncClient]:
+    """Return an HTTP client per stage; none of them opens anything yet."""
+    missing = [n for n in STAGES if settings.stage_url(n) is None and n not in transports]
+    if missing:
+        names = ", ".join(f"SPARGE_GATEWAY_{name.upper()}_URL" for name in missing)
+        raise ValueError(f"the gateway does not know where its stages are; set {names}")
+    return {
+        name: httpx.AsyncClient(base_url=url, timeout=None, transport=_network())
+        if (url := settings.stage_url(name)) is not None
+        else httpx.AsyncClient(
+            base_url=f"http://{name.replace('_', '-')}", timeout=None, transport=transports[name]
+        )
+        for name in STAGES
+    }
+
+
+def _network() -> httpx.AsyncHTTPTransport:
+    return httpx.AsyncHTTPTransport(
+        retries=1, limits=httpx.Limits(max_connections=64, max_keepalive_connections=16)
+    )
+
+
+def _forward(
+    stage: StageClient, route: Route[In, Out], settings: GatewaySettings
+) -> Callable[[In], Awaitable[Out]]:
+    deadline_s = settings.execution_deadline_s if route is EXECUTE else settings.deadline_s
+
+    async def answer_from_stage(message: In) -> Out:
+        return await stage.call(route, message, deadline_s)
+
+    return answer_from_stage
+
+
+async def _parse(request: Request, settings: GatewaySettings) -> requests.GraspRequest:
+    media_type = request.headers.get("content-type", "").split(";", 1)[0].strip().lower()
+    query = dict(request.query_params)
+    limit = settings.max_unpacked_bytes
+    if media_type == JSON:
+        return await run_in_threadpool(requests.from_json, await request.body(), query)
+    if media_type == NPZ:
+        return await run_in_threadpool(requests.from_npz, await request.body(), query, limit)
+    if media_type == FORM:
+        async with request.form(max_files=1, max_fields=32) as form:
+            upload = form.get("file")
+            if not isinstance(upload, UploadFile):
+                raise InvalidInput("the form has no file field named 'file'", field="file")
+            fields = {name: text for name, text in form.items() if isinstance(text, str)}
+            body = await upload.read()
+        return await run_in_threadpool(
+            requests.from_form, upload.filename or "", body, fields, query, limit
+        )
+    raise UnsupportedMediaType(
+        f"content type {media_type or 'none'!r} is not read here; send {JSON}, {NPZ} or {FORM}",
+        found=media_type,
+        allowed=[JSON, NPZ, FORM],
+    )

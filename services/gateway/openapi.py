@@ -1,0 +1,88 @@
+"""The OpenAPI description of POST /grasp, whose body FastAPI cannot see."""
+
+from __future__ import annotations
+
+from typing import Any
+
+from fastapi import FastAPI
+
+from services.gateway.request import GraspParameters
+from shared.schemas.answer import GraspAnswer
+from shared.schemas.scene import View
+from shared.service.openapi import add_models, error_responses
+from shared.wire import JSON, NPZ
+
+_NPZ_BODY = "arrays: points (N, 3), or depth (H, W), intrinsics (3, 3), depth_scale; others ignored"
+_NPZ_ANSWER = (
+    "arrays: point_primitive (N,) int16, point_region (N,) bool, primitives (P, 12), "
+    "grasps (G, 9): x y z qx qy qz qw width score, report: the JSON answer as UTF-8"
+)
+
+
+def describe_grasp(app: FastAPI) -> None:
+    """Add parameters, bodies and answers of POST /grasp to `app`'s document."""
+    plain = app.openapi
+
+    def openapi() -> dict[str, Any]:
+        document = plain()
+        operation = document["paths"]["/grasp"]["post"]
+        if "requestBody" not in operation:
+            add_models(document, [GraspParameters, GraspAnswer, View])
+            operation.update(_operation())
+        return document
+
+    app.openapi = openapi  # type: ignore[method-assign]  # FastAPI's documented extension point
+
+
+def _operation() -> dict[str, Any]:
+    parameters = GraspParameters.model_json_schema()["properties"]
+    arrays = View.model_json_schema()["properties"]
+    del arrays["viewpoint"]
+    fields = {**arrays, **parameters}
+    return {
+        "summary": "Where and how to grasp the object in this view for a task",
+        "parameters": [
+            {
+                "name": name,
+                "in": "query",
+                "required": False,
+                "schema": schema,
+                "description": "also a JSON field or form field of this name",
+            }
+            for name, schema in parameters.items()
+        ],
+        "requestBody": {
+            "required": True,
+            "content": {
+                JSON: {"schema": {"type": "object", "properties": fields}},
+                NPZ: {"schema": {"type": "string", "format": "binary", "description": _NPZ_BODY}},
+                "multipart/form-data": {"schema": _form(parameters)},
+            },
+        },
+        "responses": {
+            "200": {
+                "description": "An answer; found = false is one, and says why",
+                "content": {
+                    JSON: {"schema": {"$ref": "#/components/schemas/GraspAnswer"}},
+                    NPZ: {
+                        "schema": {"type": "string", "format": "binary", "description": _NPZ_ANSWER}
+                    },
+                },
+            },
+            **error_responses(),
+        },
+    }
+
+
+def _form(parameters: dict[str, Any]) -> dict[str, Any]:
+    upload = {
+        "type": "string",
+        "format": "binary",
+        "description": ".ply, .pcd, .xyz, .npz or a 16-bit .png depth image",
+    }
+    beside_png = {"intrinsics": {"type": "string"}, "depth_scale": {"type": "number"}}
+    return {
+        "type": "object",
+        "required": ["file"],
+        "properties": {"file": upload, **beside_png, **parameters},
+    }

@@ -1,0 +1,203 @@
+"""The chain: perception, primitives, reasoning, region, grasps, selection.
+
+Data flows one way; no stage calls back. Every call has what is left of the
+request's deadline.
+"""
+
+from __future__ import annotations
+
+import asyncio
+import time
+from collections.abc import Mapping
+from dataclasses import dataclass, field
+
+import numpy as np
+
+from services.gateway.request import GraspRequest
+from services.gateway.settings import GatewaySettings
+from shared.errors import DeadlineExceeded, UnknownGripper, UnknownTask
+from shared.schemas.grasp import (
+    FIND_REGION,
+    LIST_GRIPPERS,
+    PROPOSE,
+    SELECT,
+    ProposeRequest,
+    ProposeResponse,
+    RegionRequest,
+    RegionResponse,
+    SelectRequest,
+)
+from shared.schemas.primitive import RECOVER, RecoverRequest, RecoverResponse
+from shared.schemas.route import Nothing, Request, Response, Route
+from shared.schemas.scene import PERCEIVE, PerceiveRequest, PerceiveResponse
+from shared.schemas.task import DECIDE, LIST_TASKS, DecideRequest, DecideResponse
+from shared.service import StageClient
+
+
+@dataclass(frozen=True)
+class Outcome:
+    """What the stages answered; `proposed` is None when there was no region to hold."""
+
+    scene: PerceiveResponse
+    recovered: RecoverResponse
+    decision: DecideResponse
+    assigned: RegionResponse
+    proposed: ProposeResponse | None
+    grasps: np.ndarray
+    timings_ms: dict[str, float]
+
+
+@dataclass
+class _Run:
+    """One request under way: its clock and what each stage took."""
+
+    stages: Mapping[str, StageClient]
+    deadline: float
+    timings_ms: dict[str, float] = field(default_factory=dict)
+
+    async def call(self, route: Route[Request, Response], request: Request) -> Response:
+        started = time.perf_counter()
+        left = self.deadline - started
+        if left <= 0:
+            raise DeadlineExceeded(
+                f"no time was left for the stage {route.service}", stage=route.service
+            )
+        response = await self.stages[route.service].call(route, request, left)
+        spent = 1e3 * (time.perf_counter() - started)
+        self.timings_ms[route.service] = self.timings_ms.get(route.service, 0.0) + spent
+        return response
+
+
+class Pipeline:
+    """Runs the chain over typed clients, wherever the stages live."""
+
+    def __init__(self, stages: Mapping[str, StageClient], settings: GatewaySettings) -> None:
+        self._stages = stages
+        self._settings = settings
+
+    async def run(self, request: GraspRequest) -> Outcome:
+        """Return what every stage found.
+
+        Raises
+        ------
+        SpargeError
+            The error of the stage that refused, or of the chain itself.
+        """
+        run = _Run(self._stages, time.perf_counter() + self._settings.deadline_s)
+        scene = await self._perceive(run, request)
+        recovered = await self._recover(run, request, scene)
+        decision = await self._decide(run, request, recovered)
+        chosen = decision.region.primitive_ids if decision.region else ()
+        assigned = await run.call(
+            FIND_REGION,
+            RegionRequest(
+                points=scene.object_points,
+                primitives=recovered.primitives,
+                primitive_ids=chosen,
+            ),
+        )
+        proposed, grasps = None, np.empty((0, 9))
+        if assigned.point_region.any() and request.parameters.max_grasps > 0:
+            proposed, grasps = await self._grasp(run, request, scene, assigned)
+        return Outcome(scene, recovered, decision, assigned, proposed, grasps, run.timings_ms)
+
+    async def _perceive(self, run: _Run, request: GraspRequest) -> PerceiveResponse:
+        parameters = request.parameters
+        view = {name: getattr(request.view, name) for name in type(request.view).model_fields}
+        perceive = run.call(
+            PERCEIVE,
+            PerceiveRequest(
+                **view,
+                input=parameters.input,
+                target=parameters.target,
+                seed=parameters.seed,
+            ),
+        )
+        # Names are checked while perception works, so that a typing error is
+        # told at once and whatever else the request holds.
+        checked, scene = await asyncio.gather(
+            self._check_names(run, request), perceive, return_exceptions=True
+        )
+        for result in (checked, scene):
+            if isinstance(result, BaseException):
+                raise result
+        assert isinstance(scene, PerceiveResponse)
+        return scene
+
+    async def _check_names(self, run: _Run, request: GraspRequest) -> None:
+        tasks = await run.call(LIST_TASKS, Nothing())
+        known = sorted(task.name for task in tasks.tasks)
+        task = request.parameters.task
+        if task not in known:
+            raise UnknownTask(
+                f"unknown task {task!r}; known are {', '.join(known)}", found=task, known=known
+            )
+        grippers = sorted(g.name for g in (await run.call(LIST_GRIPPERS, Nothing())).grippers)
+        gripper = request.parameters.gripper
+        if gripper not in grippers:
+            raise UnknownGripper(
+                f"unknown gripper {gripper!r}; known are {', '.join(grippers)}",
+                found=gripper,
+                known=grippers,
+            )
+
+    async def _recover(
+        self, run: _Run, request: GraspRequest, scene: PerceiveResponse
+    ) -> RecoverResponse:
+        return await run.call(
+            RECOVER,
+            RecoverRequest(
+                points=scene.object_points,
+                viewpoint=request.parameters.viewpoint,
+                plane=scene.plane,
+                up=scene.up,
+                preset=self._settings.preset,
+                seed=request.parameters.seed,
+            ),
+        )
+
+    async def _decide(
+        self, run: _Run, request: GraspRequest, recovered: RecoverResponse
+    ) -> DecideResponse:
+        return await run.call(
+            DECIDE,
+            DecideRequest(
+                task=request.parameters.task,
+                reasoning=request.parameters.reasoning,
+                rule_set=self._settings.rule_set,
+                primitives=recovered.primitives,
+                explain=request.parameters.explain,
+            ),
+        )
+
+    async def _grasp(
+        self,
+        run: _Run,
+        request: GraspRequest,
+        scene: PerceiveResponse,
+        assigned: RegionResponse,
+    ) -> tuple[ProposeResponse, np.ndarray]:
+        proposed = await run.call(
+            PROPOSE,
+            ProposeRequest(
+                points=scene.object_points,
+                obstacle_points=scene.obstacle_points,
+                plane=scene.plane,
+                up=scene.up,
+                viewpoint=request.parameters.viewpoint,
+                focus=assigned.point_region,
+                gripper=request.parameters.gripper,
+                samples=self._settings.samples,
+                seed=request.parameters.seed,
+            ),
+        )
+        selected = await run.call(
+            SELECT,
+            SelectRequest(
+                points=scene.object_points,
+                point_region=assigned.point_region,
+                grasps=proposed.grasps,
+                max_grasps=request.parameters.max_grasps,
+            ),
+        )
+        return proposed, selected.grasps

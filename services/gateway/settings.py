@@ -1,0 +1,63 @@
+"""What the gateway can be told."""
+
+from __future__ import annotations
+
+from pydantic import Field
+
+from shared.schemas.primitive import Preset
+from shared.schemas.task import RuleSet
+from shared.settings import ServiceSettings, environment
+
+STAGES = (
+    "perception",
+    "primitive_recovery",
+    "reasoning",
+    "grasp_proposal",
+    "matching",
+    "execution",
+)
+
+
+class GatewaySettings(ServiceSettings):
+    """Read from `SPARGE_GATEWAY_*`.
+
+    Attributes
+    ----------
+    perception_url, ... : str or None
+        Where each stage is served. Run alone, the gateway needs all of them;
+        in the composition root a stage without a URL runs in the same process.
+    deadline_s : float
+        Bound on the time to answer POST /grasp.
+    execution_deadline_s : float
+        The same for POST /execute.
+    samples : int
+        Points at which grasps are sought (thesis 6.4.1: 300).
+    preset : str
+        Parameters of primitive recovery (Table A.1).
+    rule_set : str
+        Which rules decide.
+    approach_distance, retreat_distance : float
+        Of the pregrasp and the retreat from the grasp, in metres.
+    """
+
+    model_config = environment("gateway")
+
+    max_body_bytes: int = Field(default=32 * 2**20, gt=0)
+    perception_url: str | None = None
+    primitive_recovery_url: str | None = None
+    reasoning_url: str | None = None
+    grasp_proposal_url: str | None = None
+    matching_url: str | None = None
+    execution_url: str | None = None
+    deadline_s: float = Field(default=30.0, gt=0)
+    execution_deadline_s: float = Field(default=60.0, gt=0)
+    samples: int = Field(default=300, ge=1, le=5000)
+    preset: Preset = "simulation"
+    rule_set: RuleSet = "thesis"
+    approach_distance: float = Field(default=0.10, gt=0)
+    retreat_distance: float = Field(default=0.10, gt=0)
+
+    def stage_url(self, stage: str) -> str | None:
+        """Return where `stage` is served, or None."""
+        url: str | None = getattr(self, f"{stage}_url")
+        return url or None

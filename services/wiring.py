@@ -1,0 +1,56 @@
+"""The composition root: the one place that knows all services.
+
+A stage with a URL is called over the network, one without runs in this
+process behind the same client, over ASGI. Nothing else differs.
+"""
+
+from __future__ import annotations
+
+import importlib
+from collections.abc import AsyncIterator
+from contextlib import AsyncExitStack, asynccontextmanager
+from typing import Any
+
+import httpx
+from fastapi import FastAPI
+
+from services.gateway.app import create_app as create_gateway
+from services.gateway.settings import STAGES, GatewaySettings
+
+
+def create_stage(name: str) -> FastAPI:
+    """Return the application of one stage, with settings from the environment.
+
+    Raises
+    ------
+    ImportError
+        The stage's dependency group is not installed.
+    """
+    create: Any = importlib.import_module(f"services.{name}.app").create_app
+    app: FastAPI = create()
+    return app
+
+
+def create_app(settings: GatewaySettings | None = None) -> FastAPI:
+    """Return the whole backend: the gateway, and in this process every stage without a URL."""
+    settings = settings or GatewaySettings()
+    embedded = {name: create_stage(name) for name in STAGES if settings.stage_url(name) is None}
+    gateway = create_gateway(
+        settings,
+        {
+            name: httpx.ASGITransport(app=app, raise_app_exceptions=False)
+            for name, app in embedded.items()
+        },
+    )
+    alone = gateway.router.lifespan_context
+
+    @asynccontextmanager
+    async def lifespan(app: FastAPI) -> AsyncIterator[None]:
+        async with AsyncExitStack() as stack:
+            for stage in embedded.values():
+                await stack.enter_async_context(stage.router.lifespan_context(stage))
+            await stack.enter_async_context(alone(app))
+            yield
+
+    gateway.router.lifespan_context = lifespan
+    return gateway

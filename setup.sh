@@ -1,0 +1,68 @@
+#!/bin/sh
+# Set this checkout up: system libraries, then .venv from the hashed lock. Run by `make setup`.
+# Does nothing when everything is already there.
+set -eu
+cd "$(dirname "$0")"
+
+say() { printf 'setup: %s\n' "$*"; }
+fail() { printf 'setup: %s\n' "$*" >&2; exit 1; }
+
+find_python() {
+    for name in python3.11 python3.12 python3; do
+        if command -v "$name" >/dev/null 2>&1 &&
+            "$name" -c 'import sys; sys.exit(not (3, 11) <= sys.version_info < (3, 13))'; then
+            command -v "$name"
+            return
+        fi
+    done
+}
+
+has_library() { ldconfig -p 2>/dev/null | grep -q "$1" || /sbin/ldconfig -p 2>/dev/null | grep -q "$1"; }
+
+# What the libraries need from the system, by what is really missing.
+missing=""
+python=$(find_python)
+[ -n "$python" ] || missing="$missing python3"
+if [ -z "$python" ] || ! "$python" -c 'import ensurepip, venv' 2>/dev/null; then
+    missing="$missing python3-venv"
+fi
+command -v swipl >/dev/null 2>&1 || missing="$missing swi-prolog-nox"
+has_library libusb-1.0.so.0 || missing="$missing libusb-1.0-0"
+has_library libGL.so.1 || missing="$missing libgl1"
+has_library libgomp.so.1 || missing="$missing libgomp1"
+
+if [ -n "$missing" ]; then
+    install="apt-get install -y --no-install-recommends$missing"
+    command -v apt-get >/dev/null 2>&1 ||
+        fail "these Debian packages are missing, and this system has no apt-get:$missing"
+    if [ "$(id -u)" = 0 ]; then sudo=""
+    elif sudo -n true 2>/dev/null; then sudo="sudo"
+    else fail "system packages are missing and I may not install them. Please run
+    sudo $install
+and try again."
+    fi
+    say "installing$missing"
+    log=$(mktemp)
+    $sudo apt-get update -qq >"$log" 2>&1 || true
+    # shellcheck disable=SC2086
+    DEBIAN_FRONTEND=noninteractive $sudo $install -qq >>"$log" 2>&1 ||
+        { cat "$log" >&2; fail "apt-get failed; see above"; }
+    rm -f "$log"
+    python=$(find_python)
+    [ -n "$python" ] || fail "SPaRGE needs Python 3.11 or 3.12; found none"
+fi
+
+# The virtual environment, made anew when the lock or the interpreter changed.
+stamp=.venv/.installed
+wanted=$({ cat requirements.lock pyproject.toml; "$python" -V; pwd; } | cksum)
+if [ "$(cat "$stamp" 2>/dev/null)" != "$wanted" ]; then
+    say "installing the locked dependencies into .venv ($("$python" -V))"
+    rm -rf .venv
+    "$python" -m venv .venv
+    .venv/bin/python -m pip install --quiet --disable-pip-version-check \
+        --no-deps --require-hashes -r requirements.lock
+    .venv/bin/python -m pip install --quiet --disable-pip-version-check \
+        --no-deps --no-build-isolation --editable .
+    printf '%s\n' "$wanted" >"$stamp"
+    say "done"
+fi

@@ -1,0 +1,69 @@
+"""The gateway's answer to POST /grasp."""
+
+from __future__ import annotations
+
+from typing import Annotated
+
+from pydantic import Field
+
+from shared.schemas.fields import Vector3
+from shared.schemas.grasp import Pose
+from shared.schemas.primitive import Primitive
+from shared.schemas.scene import SupportPlane
+from shared.schemas.task import Explanation, Reason, Region, Version
+from shared.wire import Message
+
+
+class LabelledPrimitive(Primitive):
+    """A primitive with its part affordances (Version 2)."""
+
+    labels: tuple[str, ...] = ()
+
+
+class Grasp(Message):
+    """A way to hold the region, in the input's frame."""
+
+    pose: Pose
+    pregrasp: Pose
+    """Where to start the straight approach along +z."""
+    retreat: Pose
+    """Where to lift the object to."""
+    width: float
+    """Opening in metres that the grasp needs."""
+    score: Annotated[float, Field(ge=0, le=1)]
+
+
+class Scene(Message):
+    """What the answer rests on."""
+
+    plane: SupportPlane | None
+    up: Vector3
+    object_points: int
+    clusters: int
+    dropped: dict[str, int]
+    removed_as_overlap: int
+    candidates: int
+    """Hand poses that were considered."""
+    rejected: dict[str, int]
+    """How many of them were left out, by reason."""
+
+
+class GraspAnswer(Message):
+    """found = False is an answer; an empty one always says why in `reason`."""
+
+    request_id: str
+    task: str
+    reasoning: Version
+    rule_set: str
+    gripper: str
+    seed: int
+    frame_id: str
+    found: bool
+    reason: Reason | None
+    region: Region | None
+    alternatives: tuple[Region, ...]
+    primitives: tuple[LabelledPrimitive, ...]
+    grasps: tuple[Grasp, ...]
+    explanation: Explanation | None
+    scene: Scene
+    timings_ms: dict[str, float]
