@@ -29,6 +29,7 @@ fi
 command -v swipl >/dev/null 2>&1 || missing="$missing swi-prolog-nox"
 has_library libusb-1.0.so.0 || missing="$missing libusb-1.0-0"
 has_library libGL.so.1 || missing="$missing libgl1"
+has_library libEGL.so.1 || missing="$missing libegl1"
 has_library libgomp.so.1 || missing="$missing libgomp1"
 
 if [ -n "$missing" ]; then
