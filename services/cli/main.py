@@ -70,7 +70,7 @@ def grasp(
 ) -> None:
     """Find where and how to grasp the object in FILE for a task."""
     from services.cli.ask import Question, ask
-    from services.cli.show import show
+    from services.cli.show import headline, show
 
     console = Console(stderr=True)
     question = Question(
@@ -96,16 +96,15 @@ def grasp(
         from services.cli.picture import draw_answer
 
         points, assigned, region = answered.object_cloud()
-        answer = answered.answer
         draw_answer(
             picture,
             points,
             assigned,
             region,
-            answer.primitives,
+            answered.answer.primitives,
             answered.grasps,
-            answer.scene.up,
-            f"{file.stem}: {answer.task}",
+            answered.answer.scene.up,
+            f"{file.stem}: {headline(answered.answer)}",
         )
         console.print(f"picture: {picture}", highlight=False)
 

@@ -11,7 +11,7 @@ from shared.schemas.answer import GraspAnswer
 
 def show(answer: GraspAnswer, console: Console) -> None:
     """Print region, primitives, grasps, explanation and timings."""
-    _headline(answer, console)
+    console.print(headline(answer), style="bold", highlight=False)
     console.print(_primitives(answer))
     if answer.grasps:
         console.print(_grasps(answer))
@@ -26,14 +26,14 @@ def show(answer: GraspAnswer, console: Console) -> None:
     console.print(f"[bold]Time[/bold] (ms)  {spent}", highlight=False)
 
 
-def _headline(answer: GraspAnswer, console: Console) -> None:
+def headline(answer: GraspAnswer) -> str:
+    """Return the answer in one line."""
+    question = f"{answer.task} ({answer.reasoning})"
     if answer.region is None:
-        text = "no part of this object fits"
-    else:
-        parts = ", ".join(map(str, answer.region.primitive_ids))
-        label = f" ({answer.region.affordance})" if answer.region.affordance else ""
-        text = f"hold part {parts}{label}, confidence {answer.region.confidence:.2f}"
-    console.print(f"[bold]{answer.task}[/bold], {answer.reasoning}: {text}", highlight=False)
+        return f"{question}: no part of this object fits"
+    parts = " and ".join(map(str, answer.region.primitive_ids))
+    label = f" ({answer.region.affordance})" if answer.region.affordance else ""
+    return f"{question}: hold part {parts}{label}, confidence {answer.region.confidence:.2f}"
 
 
 def _primitives(answer: GraspAnswer) -> Table:

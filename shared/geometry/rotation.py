@@ -22,6 +22,8 @@ def matrix_from_quaternion(quaternion: ArrayLike) -> Matrix:
 def unit(vector: ArrayLike) -> Matrix:
     """Return vectors (..., 3) scaled to length 1; a zero vector stays zero."""
     v = np.asarray(vector, dtype=np.float64)
+    largest = np.abs(v).max(axis=-1, keepdims=True)  # first, so that squares do not underflow
+    v = np.divide(v, largest, out=np.zeros_like(v), where=largest > 0)
     length = np.linalg.norm(v, axis=-1, keepdims=True)
     return np.asarray(np.divide(v, length, out=np.zeros_like(v), where=length > 0))
 
@@ -47,8 +49,8 @@ def frame_from_z(z_axis: ArrayLike, x_hint: ArrayLike | None = None) -> Matrix:
     z = unit(z_axis)
     x = any_perpendicular(z)
     if x_hint is not None:
-        hint = np.asarray(x_hint, dtype=np.float64)
+        hint = unit(x_hint)
         flat = hint - z * (hint @ z)
-        if np.linalg.norm(flat) > 1e-9 * np.linalg.norm(hint):
+        if np.linalg.norm(flat) > 1e-9:
             x = unit(flat)
     return np.column_stack([x, np.cross(z, x), z])

@@ -102,7 +102,8 @@ class TaskDefinition(Message):
     grasp: tuple[Name, ...] = ()
     """Affordances of the part to hold, any of them (hasGraspAffordance)."""
     avoids: tuple[Name, ...] = ()
-    """Parts with these labels are left free; used when `grasp` is empty (avoidsAffordance)."""
+    """Parts with these labels are left free; without `grasp`, all others may be held
+    (avoidsAffordance)."""
 
 
 class Task(TaskDefinition):

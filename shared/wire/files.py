@@ -16,7 +16,7 @@ from typing import Any
 import numpy as np
 from numpy.typing import ArrayLike, NDArray
 
-from shared.errors import InvalidInput, MalformedRequest, UnsupportedMediaType
+from shared.errors import InvalidInput, UnsupportedMediaType
 from shared.wire.depth_png import read_depth_png
 from shared.wire.npz import read_npz
 from shared.wire.pcd import read_pcd
@@ -102,7 +102,7 @@ def read_cloud_file(
         case ".xyz":
             return CloudFile(points=_read_xyz(data, max_unpacked_bytes))
         case ".npz":
-            arrays = _read_archive(data, max_unpacked_bytes)
+            arrays = read_npz(data, max_unpacked_bytes)
             if ("points" in arrays) == ("depth" in arrays):
                 raise InvalidInput(
                     "the npz file must hold either 'points' or 'depth'; "
@@ -124,13 +124,6 @@ def read_cloud_file(
         found=extension[:20],
         allowed=list(EXTENSIONS),
     )
-
-
-def _read_archive(data: bytes, max_unpacked_bytes: int) -> dict[str, NDArray[Any]]:
-    try:
-        return read_npz(data, max_unpacked_bytes)
-    except ValueError as error:  # zipfile's word for a place outside the archive
-        raise MalformedRequest(f"the file is not a complete npz archive: {error}") from None
 
 
 def _read_xyz(data: bytes, max_unpacked_bytes: int) -> NDArray[np.float64]:

@@ -44,9 +44,9 @@ def read_npz(data: bytes, max_unpacked_bytes: int) -> dict[str, NDArray[Any]]:
             members = archive.infolist()
             _check_sizes(members, max_unpacked_bytes)
             contents = {member.filename: archive.read(member) for member in members}
-    except (zipfile.BadZipFile, zlib.error, EOFError, OSError, NotImplementedError) as error:
+    except (zipfile.BadZipFile, zlib.error, EOFError, OSError, ValueError) as error:
         raise MalformedRequest(f"the body is not a complete npz archive: {error}") from None
-    except RuntimeError as error:  # zipfile's word for an encrypted member
+    except RuntimeError as error:  # zipfile's word for an encrypted or exotic member
         raise MalformedRequest(f"the npz archive cannot be read: {error}") from None
     return {name.removesuffix(".npy"): _read_array(name, held) for name, held in contents.items()}
 
@@ -58,6 +58,11 @@ def _check_sizes(members: list[zipfile.ZipInfo], max_unpacked_bytes: int) -> Non
             found=len(members),
             allowed=MAX_MEMBERS,
         )
+    for member in members:
+        if member.compress_type not in (zipfile.ZIP_STORED, zipfile.ZIP_DEFLATED):
+            raise MalformedRequest(
+                f"array {member.filename!r} is compressed by a method that npz does not use"
+            )
     unpacked = sum(member.file_size for member in members)
     if unpacked > max_unpacked_bytes:
         raise PayloadTooLarge(

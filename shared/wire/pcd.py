@@ -12,7 +12,7 @@ from collections.abc import Sequence
 from dataclasses import dataclass
 from typing import Any
 
-import lzf  # type: ignore[import-not-found]  # of python-neo-lzf
+import lzf  # of python-neo-lzf
 import numpy as np
 from numpy.typing import NDArray
 

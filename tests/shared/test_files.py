@@ -5,6 +5,7 @@ from __future__ import annotations
 import io
 import struct
 import tracemalloc
+import zipfile
 import zlib
 from collections.abc import Callable
 from pathlib import Path
@@ -354,6 +355,15 @@ def test_png_bomb_is_not_decoded(size: tuple[int, int]) -> None:
         read_cloud_file("a.png", png_bomb(*size), intrinsics=INTRINSICS, depth_scale=1e-4)
 
 
+def lzma_npz() -> bytes:
+    stream = io.BytesIO()
+    array = io.BytesIO()
+    np.save(array, POINTS)
+    with zipfile.ZipFile(stream, "w", zipfile.ZIP_LZMA) as archive:
+        archive.writestr("points.npy", array.getvalue())
+    return stream.getvalue()
+
+
 SOUND: dict[str, Callable[[], bytes]] = {
     "binary.ply": lambda: ply(POINTS.tobytes(), *xyz_header(60)),
     "text.ply": lambda: ply(xyz_text(), *xyz_header(60), encoding="ascii"),
@@ -361,6 +371,7 @@ SOUND: dict[str, Callable[[], bytes]] = {
     "text.pcd": lambda: pcd(xyz_text(), "ascii", 60),
     "text.xyz": xyz_text,
     "points.npz": lambda: write_npz({"points": POINTS}, compress=True),
+    "lzma.npz": lzma_npz,
     "depth.npz": lambda: write_npz({"depth": DEPTH, "intrinsics": np.asarray(INTRINSICS)}),
     "depth.png": lambda: png(DEPTH),
 }

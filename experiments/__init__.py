@@ -1,0 +1,1 @@
+"""What measures and feeds SPaRGE from outside: the object catalogue, the camera, sample views."""

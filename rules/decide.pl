@@ -1,0 +1,341 @@
+/*  Which part to hold for a task: reasoning Version 1 and Version 2 of
+    chapter 5.2.
+
+    Both give a decision: a dict with
+
+        outcome        found, or why not (the codes of docs/reasons.md)
+        regions        the parts to hold, best first, each with affordance and
+                       confidence
+        labels         Version 2: the affordances of each part
+        traces         the rules that hold and led to the first region
+        miss           the nearest miss when nothing was found, else null
+        lacking        when that is why, the affordances that no part has
+
+    A region is as certain as the least supported condition of what led to it
+    (measurement.pl says what support is). Of several, the most certain is the
+    answer and the others are alternatives; equals keep the order of the parts.
+*/
+
+:- module(decide, [decision/4]).                % +RuleSet, +Version, +Task, -Decision
+:- use_module(explain).
+:- use_module(predicates, [primitive_values/3]).
+:- use_module(relations).
+:- use_module(rule_sets, [rule_module/3, ruled_task/2]).
+:- use_module(library(apply)).
+:- use_module(library(lists)).
+:- use_module(library(pairs)).
+
+%!  decision(+RuleSet, +Version, +Task, -Decision) is det.
+%
+%   Version is v1 or v2.
+
+decision(RuleSet, v1, Task, Decision) :-
+    (   ruled_task(RuleSet, Task)
+    ->  task_decision(RuleSet, Task, Decision)
+    ;   Decision = decision{outcome: unknown_task}
+    ).
+decision(RuleSet, v2, Task, Decision) :-
+    (   task(Task)
+    ->  affordance_decision(RuleSet, Task, Decision)
+    ;   Decision = decision{outcome: unknown_task}
+    ).
+
+nothing(Outcome, Decision) :-
+    Decision = decision{outcome: Outcome, regions: [], labels: [], traces: [], miss: null,
+                        lacking: []}.
+
+                /*******************************
+                *          VERSION 1           *
+                *******************************/
+
+task_decision(_, _, Decision) :-
+    \+ primitive_values(_, _, _),
+    !,
+    nothing(no_primitives, Decision).
+task_decision(RuleSet, Task, Decision) :-
+    rule_module(RuleSet, v1, Module),
+    findall(ID-Trace, proof(Module, affordTask(ID, Task), Trace), Proofs),
+    (   Proofs == []
+    ->  findall(Attempt, attempt(Module, affordTask(_, Task), Attempt), Attempts),
+        nearest_or_null(Attempts, Miss),
+        nothing(no_part_matches, Nothing),
+        Decision = Nothing.put(miss, Miss)
+    ;   most_certain_each(Proofs, Best),
+        ranked(Best, [ID1-Trace1|Others]),
+        maplist(region_of_proof, [ID1-Trace1|Others], Regions),
+        nothing(found, Nothing),
+        Decision = Nothing.put(_{regions: Regions, traces: [Trace1]})
+    ).
+
+region_of_proof(ID-Trace, region{parts: [ID], affordance: null, confidence: Certainty}) :-
+    Certainty = Trace.certainty.
+
+%   The most certain trace for each key; of equals the first.
+
+most_certain_each(Proofs, Best) :-
+    keysort(Proofs, Sorted),
+    group_pairs_by_key(Sorted, Groups),
+    maplist(most_certain_of, Groups, Best).
+
+most_certain_of(Key-Traces, Key-Best) :-
+    ranked_traces(Traces, [Best|_]).
+
+ranked_traces(Traces, Ranked) :-
+    map_list_to_pairs(uncertainty, Traces, Pairs),
+    keysort(Pairs, Sorted),
+    pairs_values(Sorted, Ranked).
+
+ranked(Pairs, Ranked) :-
+    map_list_to_pairs(pair_uncertainty, Pairs, Keyed),
+    keysort(Keyed, Sorted),
+    pairs_values(Sorted, Ranked).
+
+pair_uncertainty(_-Trace, Uncertainty) :-
+    uncertainty(Trace, Uncertainty).
+
+uncertainty(Trace, Uncertainty) :-
+    Uncertainty is 1 - Trace.certainty.
+
+nearest_or_null(Attempts, Miss) :-
+    (   nearest(Attempts, Nearest)
+    ->  Miss = Nearest
+    ;   Miss = null
+    ).
+
+                /*******************************
+                *          VERSION 2           *
+                *******************************/
+
+affordance_decision(_, _, Decision) :-
+    \+ primitive_values(_, _, _),
+    !,
+    nothing(no_primitives, Decision).
+affordance_decision(RuleSet, Task, Decision) :-
+    rule_module(RuleSet, v2, Module),
+    labelled(Module, Labelled),
+    labels(Labelled, Labels),
+    findall(A, task_object(A, Task), Required0),
+    sort(Required0, Required),
+    exclude(offered(Labelled), Required, Lacking),
+    (   Lacking = [_|_]
+    ->  closest_to_label(Module, Lacking, Miss),
+        nothing(object_lacks_affordance, Nothing),
+        Chosen = Nothing.put(_{lacking: Lacking, miss: Miss})
+    ;   maplist(best_of(Labelled), Required, Provided),
+        choose(Module, Task, Labelled, Provided, Chosen)
+    ),
+    Decision = Chosen.put(labels, Labels).
+
+%   Every part with every affordance that it has: (Affordance-ID)-Trace.
+
+labelled(Module, Labelled) :-
+    findall((Affordance-ID)-Trace,
+            proof(Module, partAffordance(ID, Affordance), Trace),
+            Proofs),
+    most_certain_each(Proofs, Labelled).
+
+labels(Labelled, Labels) :-
+    findall(ID, primitive_values(ID, _, _), IDs),
+    maplist(labels_of(Labelled), IDs, Labels).
+
+labels_of(Labelled, ID, label{part: ID, affordances: Affordances}) :-
+    findall(A, member((A-ID)-_, Labelled), Affordances).
+
+offered(Labelled, Affordance) :-
+    memberchk((Affordance-_)-_, Labelled).
+
+best_of(Labelled, Affordance, provided(Affordance, ID, Trace)) :-
+    findall(Part-T, member((Affordance-Part)-T, Labelled), Parts),
+    ranked(Parts, [ID-Trace|_]).
+
+closest_to_label(Module, Affordances, Miss) :-
+    findall(Attempt,
+            ( member(Affordance, Affordances),
+              attempt(Module, partAffordance(_, Affordance), Attempt) ),
+            Attempts),
+    nearest_or_null(Attempts, Miss).
+
+%   What may be held: a part with a grasp affordance, or any part if the task names
+%   none; and no part with an affordance to avoid.
+
+choose(Module, Task, Labelled, Provided, Decision) :-
+    findall(A, grasp_affordance(A, Task), Graspable0),
+    findall(A, avoided_affordance(A, Task), Avoided0),
+    sort(Graspable0, Graspable),
+    sort(Avoided0, Avoided),
+    findall(Grip, grip(Graspable, Labelled, Grip), Grips),
+    partition(occupied(Labelled, Avoided), Grips, Occupied, Free),
+    (   Free = [_|_]
+    ->  found(Module, Task, Graspable, Avoided, Provided, Free, Decision)
+    ;   Occupied = [_|_]
+    ->  nothing(every_part_avoided, Nothing),
+        least_avoided(Task, Labelled, Avoided, Occupied, Miss),
+        Decision = Nothing.put(miss, Miss)
+    ;   nothing(no_grasp_part, Nothing),
+        closest_to_label(Module, Graspable, Miss),
+        Decision = Nothing.put(_{lacking: Graspable, miss: Miss})
+    ).
+
+%   grip(ID, Affordance, Traces): hold part ID by Affordance, which Traces prove.
+
+grip([], _, grip(ID, null, [])) :-
+    !,
+    primitive_values(ID, _, _).
+grip(Graspable, Labelled, grip(ID, Affordance, [Trace])) :-
+    member((Affordance-ID)-Trace, Labelled),
+    memberchk(Affordance, Graspable).
+
+occupied(Labelled, Avoided, grip(ID, _, _)) :-
+    member(Affordance, Avoided),
+    memberchk((Affordance-ID)-_, Labelled),
+    !.
+
+%   Without a grasp affordance all the parts together are the region; otherwise
+%   each is one of its own.
+
+found(Module, Task, [], Avoided, Provided, Grips, Decision) :-
+    !,
+    findall(ID, member(grip(ID, _, _), Grips), IDs),
+    option(Module, Task, Avoided, Provided, IDs, null, [], Region, Relation),
+    decided(Provided, [], [Region], Relation, Decision).
+found(Module, Task, _, Avoided, Provided, Grips, Decision) :-
+    findall(Region-option(Relation, Traces),
+            ( member(grip(ID, Affordance, Traces), Grips),
+              option(Module, Task, Avoided, Provided, [ID], Affordance, Traces, Region, Relation) ),
+            Options),
+    best_regions(Options, [Region-option(Relation, Traces)|Others]),
+    pairs_keys(Others, Alternatives),
+    decided(Provided, Traces, [Region|Alternatives], Relation, Decision).
+
+decided(Provided, GraspTraces, Regions, Relation, Decision) :-
+    findall(Trace, member(provided(_, _, Trace), Provided), ProvidedTraces),
+    append(ProvidedTraces, GraspTraces, All),
+    list_to_set(All, Labels),
+    nothing(found, Nothing),
+    Decision = Nothing.put(_{regions: Regions, traces: [Relation|Labels]}).
+
+%   One way to hold the object: the region, and the relations of the ontology that
+%   lead to it as a rule of its own.
+
+option(Module, Task, Avoided, Provided, IDs, Affordance, Traces, Region, Relation) :-
+    findall(Condition,
+            ( member(provided(Required, ID, _), Provided),
+              relation_condition(requiresAffordance, Task, Required, ID, Condition) ),
+            Requires),
+    findall(Condition,
+            ( Affordance \== null, member(ID, IDs),
+              relation_condition(hasGraspAffordance, Task, Affordance, ID, Condition) ),
+            Grasps),
+    findall(Condition,
+            ( member(ID, IDs), member(A, Avoided), left_free(Module, Task, A, ID, Condition) ),
+            Frees),
+    append([Requires, Grasps, Frees], Conditions),
+    findall(Trace, member(provided(_, _, Trace), Provided), ProvidedTraces),
+    append(ProvidedTraces, Traces, All),
+    certainty(Conditions, Certainty0),
+    foldl(less_certain, All, Certainty0, Certainty),
+    foldl(bind_provided, Provided, bindings{}, Bindings0),
+    (   IDs = [ID] -> Bindings = Bindings0.put(region, ID) ; Bindings = Bindings0 ),
+    atomic_list_concat([relations, :, Task], Rule),
+    Region = region{parts: IDs, affordance: Affordance, confidence: Certainty},
+    Relation = trace{rule: Rule, part: null, holds: true, bindings: Bindings,
+                     conditions: Conditions, certainty: Certainty}.
+
+less_certain(Trace, Least0, Least) :-
+    Least is min(Least0, Trace.certainty).
+
+bind_provided(provided(Affordance, ID, _), Bindings0, Bindings) :-
+    Bindings = Bindings0.put(Affordance, ID).
+
+%   The most certain first; of a part that can be held in several ways, the most
+%   certain one. Parts that the confidence cannot tell apart, because a required
+%   affordance is less certain than either, are told apart by their own label.
+
+best_regions(Options, Best) :-
+    map_list_to_pairs(option_uncertainty, Options, Keyed),
+    keysort(Keyed, Sorted),
+    pairs_values(Sorted, Ranked),
+    first_of_each_part(Ranked, [], Best).
+
+option_uncertainty(Region-option(_, [Trace]), Whole-Own) :-
+    Whole is 1 - Region.confidence,
+    Own is 1 - Trace.certainty.
+
+first_of_each_part([], _, []).
+first_of_each_part([Option|Rest], Seen, Best) :-
+    Option = Region-_,
+    Region.parts = [ID],
+    (   memberchk(ID, Seen)
+    ->  Best = Others
+    ;   Best = [Option|Others]
+    ),
+    first_of_each_part(Rest, [ID|Seen], Others).
+
+relation_condition(Property, Task, Affordance, ID, Condition) :-
+    format(string(Text), "triple(~q, ~q, ~q)", [Task, Property, Affordance]),
+    Condition = m{predicate: Text, part: ID, holds: true, kind: relation, measured: Affordance,
+                  required: [Affordance], margin: null, unit: null, support: null, excess: 0.0,
+                  outside: []}.
+
+                /*******************************
+                *        PARTS TO AVOID        *
+                *******************************/
+
+%   A part that lacks Affordance: what failed most clearly says by how much.
+
+left_free(Module, Task, Affordance, ID, Condition) :-
+    findall(Attempt, attempt(Module, partAffordance(ID, Affordance), Attempt), Attempts),
+    (   nearest(Attempts, Nearest)
+    ->  Freedom is 1 - Nearest.certainty,
+        failing(Nearest.conditions, Failing),
+        extreme(excess, Failing, Because),
+        Margin = Because.margin,
+        ( number(Margin) -> Distance is abs(Margin) ; Distance = null )
+    ;   Freedom = 1.0, Because = null, Distance = null
+    ),
+    avoid_condition(Task, Affordance, ID, true, Freedom, Distance, Because, Condition).
+
+%   Every part is to be left free: the one with the least certain label comes
+%   closest, and its tightest condition says by how much.
+
+least_avoided(Task, Labelled, Avoided, Occupied, Miss) :-
+    findall(Certainty-label(ID, Affordance, Trace),
+            ( member((Affordance-ID)-Trace, Labelled),
+              memberchk(grip(ID, _, _), Occupied), memberchk(Affordance, Avoided),
+              Certainty = Trace.certainty ),
+            Pairs),
+    keysort(Pairs, [Least-label(ID, Affordance, Trace)|_]),
+    extreme(doubt, Trace.conditions, Because),
+    Margin = Because.margin,
+    ( number(Margin) -> Distance is -abs(Margin) ; Distance = null ),
+    Freedom is 1 - Least,
+    avoid_condition(Task, Affordance, ID, false, Freedom, Distance, Because, Condition),
+    atomic_list_concat([relations, :, Task], Rule),
+    Miss = trace{rule: Rule, part: ID, holds: false, bindings: bindings{region: ID},
+                 conditions: [Condition], certainty: Freedom}.
+
+avoid_condition(Task, Affordance, ID, Holds, Support, Distance, Because, Condition) :-
+    format(string(Text), "triple(~q, avoidsAffordance, ~q)", [Task, Affordance]),
+    (   is_dict(Because) -> Unit = Because.unit ; Unit = null ),
+    Condition = m{predicate: Text, part: ID, holds: Holds, kind: avoided, measured: Affordance,
+                  required: [Affordance], margin: Distance, unit: Unit, support: Support,
+                  excess: 0.0, outside: [], because: Because}.
+
+failing(Conditions, Failing) :-
+    include(fails, Conditions, Failing).
+
+fails(Condition) :-
+    false == Condition.holds.
+
+%   The condition with the largest excess, or the largest doubt; the first of
+%   equals.
+
+extreme(Measure, Conditions, Extreme) :-
+    map_list_to_pairs(negative(Measure), Conditions, Pairs),
+    keysort(Pairs, [_-Extreme|_]).
+
+negative(excess, Condition, Key) :-
+    Key is -Condition.excess.
+negative(doubt, Condition, Support) :-
+    Support0 = Condition.support,
+    ( number(Support0) -> Support = Support0 ; Support = 1.0 ).

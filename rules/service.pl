@@ -1,0 +1,123 @@
+/*  The door: one JSON text in, one JSON text out.
+
+    Names and numbers of a request arrive as data inside that text and are never
+    part of a goal, so nothing in them can be executed. Whatever goes wrong comes
+    back as an error in the answer; the parts of a request are withdrawn however
+    it ends.
+*/
+
+:- module(service, [answer/2]).         % +Request, -Answer
+:- use_module(decide).
+:- use_module(predicates).
+:- use_module(relations).
+:- use_module(rule_sets).
+:- use_module(library(apply)).
+:- use_module(library(http/json)).
+:- use_module(library(lists)).
+:- use_module(library(prolog_code)).
+
+%!  answer(+Request, -Answer) is det.
+%
+%   Request is a JSON object with an operation and its arguments, Answer one
+%   with `status` ok and the result, or with `status` error, the error's kind
+%   and messages. Both are text. Output that a rule writes is swallowed.
+
+answer(Request, Answer) :-
+    with_output_to(string(_), replied(Request, Reply)),
+    atom_json_dict(Answer, Reply, [as(string), width(0)]).
+
+replied(Request, Reply) :-
+    catch(( understood(Request, Asked), performed(Asked, Reply) ),
+          Error,
+          error_reply(Error, Reply)),
+    !.
+replied(_, reply{status: error, kind: failed, messages: ["the operation failed"]}).
+
+understood(Request, Asked) :-
+    atom_json_dict(Request, Asked, [value_string_as(atom)]).
+
+performed(Asked, Reply) :-
+    operation(Asked.operation, Asked, Result),
+    Reply = reply{status: ok, result: Result}.
+
+error_reply(bad_rules(Messages), reply{status: error, kind: bad_rules, messages: Messages}) :- !.
+error_reply(too_long(Limit), reply{status: error, kind: too_long, messages: [Message]}) :-
+    !,
+    format(string(Message), "no end within ~D inferences", [Limit]).
+error_reply(Error, reply{status: error, kind: prolog, messages: [Message]}) :-
+    message_to_codes_safely(Error, Message).
+
+message_to_codes_safely(Error, Message) :-
+    catch(( '$messages':translate_message(Error, Lines, []),
+            with_output_to(string(Message),
+                           ( current_output(Out), print_message_lines(Out, '', Lines) )) ),
+          _, fail),
+    !.
+message_to_codes_safely(Error, Message) :-
+    format(string(Message), "~q", [Error]).
+
+                /*******************************
+                *          OPERATIONS          *
+                *******************************/
+
+%   load: read a rule set; says which tasks and affordances it has rules for.
+
+operation(load, Asked, Result) :-
+    load_rule_set(Asked.directory, Asked.rule_set),
+    findall(Task, ruled_task(Asked.rule_set, Task), Tasks0),
+    findall(Affordance, ruled_affordance(Asked.rule_set, Affordance), Affordances0),
+    sort(Tasks0, Tasks),
+    sort(Affordances0, Affordances),
+    Result = rules{tasks: Tasks, affordances: Affordances}.
+
+%   learn and forget: statements of a knowledge base.
+
+operation(learn, Asked, learned{}) :-
+    Knowledge = Asked.knowledge,
+    forall(member([Subject, Property, Object], Asked.triples),
+           learn(Knowledge, Subject, Property, Object)).
+operation(forget, Asked, forgotten{}) :-
+    forget(Asked.knowledge, Asked.subject).
+operation(forget_all, Asked, forgotten{}) :-
+    forget(Asked.knowledge, _).
+
+%   decide: the part to hold.
+
+operation(decide, Asked, Result) :-
+    setup_call_cleanup(
+        true,
+        ( maplist(state, Asked.parts),
+          with_knowledge(Asked.knowledge, bounded_decision(Asked, Decision)),
+          facts(Asked, Facts) ),
+        withdraw_parts),
+    Result = Decision.put(facts, Facts).
+
+state(Part) :-
+    state_part(Part.id, Part.position, Part.dimensions, Part.exponents, Part.shape,
+               Part.probability).
+
+bounded_decision(Asked, Decision) :-
+    Limit = Asked.max_inferences,
+    call_with_inference_limit(decision(Asked.rule_set, Asked.version, Asked.task, Decision),
+                              Limit, Outcome),
+    (   Outcome == inference_limit_exceeded
+    ->  throw(too_long(Limit))
+    ;   true
+    ).
+
+%   The facts that the rules saw.
+
+facts(Asked, Facts) :-
+    findall(Fact, fact(Asked, Fact), Facts).
+
+fact(_, Fact) :-
+    primitive_values(ID, Position, Dimensions, Exponents, Shape),
+    format(string(Fact), "~q", [primitive_values(ID, Position, Dimensions, Exponents, Shape)]).
+fact(Asked, Fact) :-
+    Asked.version == v2,
+    with_knowledge_all(Asked.knowledge, triple(Asked.task, _, _), Triples),
+    member(Triple, Triples),
+    format(string(Fact), "~q", [Triple]).
+
+with_knowledge_all(Knowledge, Triple, Triples) :-
+    with_knowledge(Knowledge, findall(Triple, Triple, Triples)).

@@ -1,0 +1,86 @@
+"""The stage: checks a request and has a free simulation process replay it."""
+
+from __future__ import annotations
+
+import queue
+import threading
+
+from services.execution.checks import check_request
+from services.execution.settings import ExecutionSettings
+from services.execution.simulator import Simulator
+from shared.errors import StageUnavailable, TooBusy
+from shared.schemas.execution import ExecuteRequest, ExecuteResponse
+
+
+class Executor:
+    """A few simulation processes, each used by one request at a time.
+
+    Parameters
+    ----------
+    settings : ExecutionSettings
+    """
+
+    def __init__(self, settings: ExecutionSettings) -> None:
+        self._settings = settings
+        self._idle: queue.LifoQueue[Simulator | None] = queue.LifoQueue()
+        for _ in range(settings.workers):
+            self._idle.put(None)  # a place whose process is not started yet
+        self._closed = threading.Event()
+
+    def warm_up(self) -> None:
+        """Start one process; the others start when they are first needed."""
+        self._idle.put(self._ready(self._idle.get()))
+
+    def execute(self, request: ExecuteRequest) -> ExecuteResponse:
+        """Replay a grasp with the Panda and say whether it lifted the object.
+
+        The same request always gets the same answer; `request.seed` changes
+        nothing, for nothing here is random.
+
+        Raises
+        ------
+        InvalidInput
+            The request makes no sense; also as `UnknownGripper`, `WrongUnits`,
+            `DegenerateCloud`.
+        PayloadTooLarge
+            The mesh has too many faces.
+        TooBusy
+            No process became free in time.
+        DeadlineExceeded, StageUnavailable
+            The simulation took too long, or its process died.
+        """
+        check_request(request)
+        try:
+            simulator = self._idle.get(timeout=self._settings.queue_wait_s)
+        except queue.Empty:
+            raise TooBusy(
+                f"all {self._settings.workers} simulation processes have been busy for "
+                f"{self._settings.queue_wait_s:g} s",
+                stage="execution",
+            ) from None
+        try:
+            simulator = self._ready(simulator)
+            return simulator.run(request, self._settings.time_limit_s)
+        finally:
+            self._give_back(simulator)
+
+    def close(self) -> None:
+        """End the processes; one that is at work ends when its request does."""
+        self._closed.set()
+        for _ in range(self._idle.qsize()):
+            self._give_back(self._idle.get())
+
+    def _ready(self, simulator: Simulator | None) -> Simulator:
+        if self._closed.is_set():
+            raise StageUnavailable("the execution stage is shutting down", stage="execution")
+        if simulator is not None and simulator.alive:
+            if simulator.executions < self._settings.executions_per_worker:
+                return simulator
+            simulator.stop()
+        return Simulator()
+
+    def _give_back(self, simulator: Simulator | None) -> None:
+        if self._closed.is_set() and simulator is not None:
+            simulator.stop()
+            simulator = None
+        self._idle.put(simulator)

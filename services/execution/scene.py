@@ -1,0 +1,93 @@
+"""From the request's frame to a world with gravity along -z and the table top at z = 0.
+
+The world depends on the grasp, the object and the up direction only, never on
+the request's axes: the same scene seen from elsewhere gives the same world.
+"""
+
+from __future__ import annotations
+
+from dataclasses import dataclass
+
+import numpy as np
+from numpy.typing import NDArray
+
+from services.execution.convex import ConvexPart
+from services.execution.decomposition import parts_of_mesh, parts_of_primitives
+from shared.errors import InvalidInput
+from shared.geometry.rotation import frame_from_z, unit
+from shared.geometry.se3 import inverse, matrix_from_pose, pose_matrix
+from shared.schemas.execution import ExecuteRequest
+
+Array = NDArray[np.float64]
+
+STEEP = 0.3
+"""Below this horizontal share of the approach direction, a grasp comes from above."""
+
+
+@dataclass(frozen=True)
+class Scene:
+    """A grasp on an object that stands on the plane z = 0, its centre above the origin.
+
+    Attributes
+    ----------
+    world_from_grasp : (4, 4) array
+        Its approach (+z) has no component along world y, unless it is nearly vertical.
+    width : float
+        Opening that the grasp needs, metres.
+    parts : tuple of ConvexPart
+        The object in the world's frame, nothing of it below z = 0.
+    """
+
+    world_from_grasp: Array
+    width: float
+    parts: tuple[ConvexPart, ...]
+
+
+def scene_from_request(request: ExecuteRequest) -> Scene:
+    """Build the world of a checked request.
+
+    Without a plane, the table stands right under the object's lowest point. What
+    dips below the plane (a primitive recovered from one view often does) is cut off.
+
+    Raises
+    ------
+    DegenerateCloud
+        The object spans no volume.
+    InvalidInput
+        The whole object lies below the plane.
+    """
+    parts = (
+        parts_of_mesh(request.vertices, request.faces)
+        if request.vertices is not None and request.faces is not None
+        else parts_of_primitives(request.primitives)
+    )
+    frame_from_grasp = matrix_from_pose(request.pose.position, request.pose.quaternion)
+    world_from_frame = _world_from_frame(request, frame_from_grasp, parts)
+    standing = [part.moved(world_from_frame).above(0.0) for part in parts]
+    solid = tuple(part for part in standing if part is not None)
+    if not solid:
+        raise InvalidInput(
+            "the object lies below the support plane: does plane.normal point to the objects?",
+            field="plane",
+        )
+    return Scene(world_from_frame @ frame_from_grasp, request.width, solid)
+
+
+def _world_from_frame(
+    request: ExecuteRequest, frame_from_grasp: Array, parts: list[ConvexPart]
+) -> Array:
+    vertices = np.vstack([part.vertices for part in parts])
+    if request.plane is not None:
+        length = float(np.linalg.norm(request.plane.normal))
+        up = unit(request.plane.normal)
+        ground = -request.plane.offset / length
+    else:
+        up = unit(request.up or (0.0, 0.0, 1.0))
+        ground = float((vertices @ up).min())
+    approach = frame_from_grasp[:3, 2]
+    horizontal = approach - up * (approach @ up)
+    slanted = np.linalg.norm(horizontal) > STEEP
+    heading = horizontal if slanted else frame_from_grasp[:3, 0]
+    axes = frame_from_z(up, heading)
+    middle = (vertices.min(axis=0) + vertices.max(axis=0)) / 2
+    return inverse(pose_matrix(middle + up * (ground - middle @ up), axes))

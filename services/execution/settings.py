@@ -1,0 +1,30 @@
+"""What the execution service can be told, from `SPARGE_EXECUTION_*`."""
+
+from __future__ import annotations
+
+from pydantic import Field
+
+from shared.settings import ServiceSettings, environment
+
+
+class ExecutionSettings(ServiceSettings):
+    """Limits of the simulation; its physics is fixed in the domain modules.
+
+    Attributes
+    ----------
+    workers : int
+        Simulation processes; each runs one execution at a time.
+    time_limit_s : float
+        Wall time that one execution may take before its process is ended.
+    queue_wait_s : float
+        How long a request waits for a free process before it is told to come again.
+    executions_per_worker : int
+        A process is replaced after this many, whatever native code has leaked.
+    """
+
+    model_config = environment("execution")
+
+    workers: int = Field(default=1, ge=1, le=64)
+    time_limit_s: float = Field(default=30.0, gt=0)
+    queue_wait_s: float = Field(default=20.0, ge=0)
+    executions_per_worker: int = Field(default=500, ge=1)

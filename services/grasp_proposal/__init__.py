@@ -1,0 +1,1 @@
+"""Grasp proposal: 6-DOF grasps of a parallel gripper that collide with nothing that was seen."""

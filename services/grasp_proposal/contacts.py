@@ -1,0 +1,221 @@
+"""Where the pads will touch: exact edges of the part, and how well they oppose each other."""
+
+from __future__ import annotations
+
+from dataclasses import dataclass, replace
+
+import numpy as np
+from numpy.typing import NDArray
+
+from services.grasp_proposal.boxes import chunks, finger_hits, local_coordinates, palm_hits
+from services.grasp_proposal.hand import Hand
+from services.grasp_proposal.search import Placements
+from services.grasp_proposal.workspace import Workspace
+from shared.geometry.rotation import unit
+
+Array = NDArray[np.float64]
+Mask = NDArray[np.bool_]
+
+_EDGE = 0.003
+_CONTINUES = 0.006
+_STRIPS = 4
+_MAX_HIDDEN = 0.4
+_LEAST_POINTS = 3
+
+
+@dataclass(frozen=True)
+class Contacts:
+    """How each of G placed hands would touch the part.
+
+    Attributes
+    ----------
+    placed : Placements
+        With exact edges; the hidden share is part of `left` and `right`.
+    width, opening : (G,) arrays
+        Of the part between the pads, and between the pads on the way in.
+    hidden : (G,) array
+        How much of `width` is a guess about the side that was not seen.
+    alignment : (G,) array
+        Cosine between the closing direction and the worse contact normal.
+    coverage : (G,) array
+        Share of the pads' width that has surface at its edge, on the worse side.
+    twist : (G,) array
+        How far left and right contacts lie apart along x, metres.
+    engagement : (G,) array
+        How far the tips reach past the part's front, metres.
+    in_focus : (G,) array
+        Share of the enclosed points where a grasp is wanted.
+    finger_hit, palm_hit, empty : (G,) bool arrays
+        Touches the object on the way; holds nothing.
+    """
+
+    placed: Placements
+    width: Array
+    opening: Array
+    hidden: Array
+    alignment: Array
+    coverage: Array
+    twist: Array
+    engagement: Array
+    in_focus: Array
+    finger_hit: Mask
+    palm_hit: Mask
+    empty: Mask
+
+
+def find_contacts(workspace: Workspace, hand: Hand, placed: Placements) -> Contacts:
+    """Look at each placed hand with the whole cloud."""
+    parts = [
+        _contacts(workspace, hand, placed.take(np.arange(len(placed))[rows]))
+        for rows in chunks(len(placed), len(workspace.points))
+    ]
+    joined = {
+        name: np.concatenate([getattr(part, name) for part in parts])
+        for name in Contacts.__dataclass_fields__
+        if name != "placed"
+    }
+    edges = {
+        name: np.concatenate([getattr(part.placed, name) for part in parts])
+        for name in ("left", "right", "front")
+    }
+    return Contacts(placed=replace(placed, **edges), **joined)
+
+
+@dataclass(frozen=True)
+class _Slab:
+    """The surface within a finger's width of each of G hands; rows are padded with NaN.
+
+    Attributes
+    ----------
+    local : (G, 3, n) array
+        Coordinates from the placement's origin, along its axes.
+    points, normals : (G, n, 3) arrays
+        The same points in the workspace.
+    in_focus : (G, n) bool array
+    """
+
+    local: NDArray[np.float32]
+    points: Array
+    normals: Array
+    in_focus: Mask
+
+
+def _slab(workspace: Workspace, hand: Hand, placed: Placements) -> _Slab:
+    local = local_coordinates(placed, workspace.points)
+    inside = np.abs(local[:, 0]) < hand.finger_width / 2 + 0.001
+    rows, columns = np.nonzero(inside)
+    counts = inside.sum(axis=1)
+    place = np.arange(len(rows)) - np.repeat(np.cumsum(counts) - counts, counts)
+    index = np.zeros((len(placed), max(1, int(counts.max(initial=0)))), dtype=np.intp)
+    index[rows, place] = columns
+    filled = np.arange(index.shape[1]) < counts[:, None]
+    gathered = np.take_along_axis(local, index[:, None], axis=2)
+    gathered[np.broadcast_to(~filled[:, None], gathered.shape)] = np.nan
+    return _Slab(
+        gathered, workspace.points[index], workspace.normals[index], workspace.in_focus[index]
+    )
+
+
+def _contacts(workspace: Workspace, hand: Hand, placed: Placements) -> Contacts:
+    slab = _slab(workspace, hand, placed)
+    x, y, z = slab.local[:, 0], slab.local[:, 1], slab.local[:, 2]
+    held = (np.abs(x) < hand.finger_width / 2) & (z < placed.tip[:, None])
+    held &= (y > placed.left[:, None] - 0.001) & (y < placed.right[:, None] + 0.001)
+    count = held.sum(axis=1)
+    left, right = _span(y, held)
+    front, _ = _span(z, held)
+    sides = [
+        _side(workspace, placed, hand, slab, held, -1, left),
+        _side(workspace, placed, hand, slab, held, +1, right),
+    ]
+    left_hidden, right_hidden = _hidden_flanks(workspace, placed, right - left, hand)
+    exact = replace(placed, left=left - left_hidden, right=right + right_hidden, front=front)
+    width = exact.right - exact.left
+    opening = np.minimum(width + 2 * hand.clearance, hand.max_opening)
+    return Contacts(
+        placed=exact,
+        width=width,
+        opening=opening,
+        hidden=left_hidden + right_hidden,
+        alignment=np.minimum(sides[0][0], sides[1][0]),
+        coverage=np.minimum(sides[0][1], sides[1][1]),
+        twist=np.abs(sides[0][2] - sides[1][2]),
+        engagement=placed.tip - front,
+        in_focus=(held & slab.in_focus).sum(axis=1) / np.maximum(count, 1),
+        finger_hit=finger_hits(exact, hand, opening, slab.local),
+        palm_hit=palm_hits(exact, hand, local_coordinates(exact, workspace.coarse)),
+        empty=count < _LEAST_POINTS,
+    )
+
+
+def _side(
+    workspace: Workspace,
+    placed: Placements,
+    hand: Hand,
+    slab: _Slab,
+    held: Mask,
+    sign: int,
+    edge: Array,
+) -> tuple[Array, Array, Array]:
+    """Return alignment, coverage and mean x of the contact on one side (-1 left, +1 right).
+
+    The contact normal is that of the visible surface at the edge. Where the
+    surface ends there as the sensor saw it, the pad touches what lies behind the
+    outline; then the normal is that of the apparent contour, perpendicular to
+    both the line of sight and the outline (Cipolla and Giblin 1990).
+    """
+    x, z = slab.local[:, 0], slab.local[:, 2]
+    outwards = sign * (slab.local[:, 1] - edge[:, None].astype(np.float32))
+    contact = held & (outwards > -_EDGE)
+    weight = contact / np.maximum(contact.sum(axis=1), 1)[:, None]
+    closing = placed.rotation[:, :, 1]
+    normal = unit(np.einsum("gn,gni->gi", weight, slab.normals))
+    alignment = sign * np.einsum("gi,gi->g", normal, closing)
+    if workspace.viewpoint is not None:
+        beyond = (outwards > 0) & (outwards < _CONTINUES)
+        beyond &= z < (placed.tip + _CONTINUES)[:, None]
+        centre = np.einsum("gn,gni->gi", weight, slab.points)
+        contour = unit(
+            np.cross(_outline(slab.points, weight, centre), centre - workspace.viewpoint)
+        )
+        facing = np.abs(np.einsum("gi,gi->g", contour, closing))
+        alignment = np.where(beyond.any(axis=1), alignment, np.maximum(alignment, facing))
+    strip = np.floor((x / hand.finger_width + 0.5) * _STRIPS)
+    filled = [(contact & (strip == s)).any(axis=1) for s in range(_STRIPS)]
+    mean_x = (np.where(contact, x, 0.0) * weight).sum(axis=1)
+    return alignment, np.mean(filled, axis=0), mean_x
+
+
+def _outline(points: Array, weight: Array, centre: Array) -> Array:
+    """Return the main direction (G, 3) of the weighted points (G, n, 3)."""
+    centred = (points - centre[:, None]) * np.sqrt(weight)[:, :, None]
+    _, vectors = np.linalg.eigh(np.matmul(centred.transpose(0, 2, 1), centred))
+    return np.asarray(vectors[:, :, 2])
+
+
+def _hidden_flanks(
+    workspace: Workspace, placed: Placements, width: Array, hand: Hand
+) -> tuple[Array, Array]:
+    """Return how far the part may reach beyond its visible edges, left and right (G,).
+
+    Seen at an angle a to the approach, a round part shows r (1 + cos a) of its
+    2 r across the closing direction; the rest is behind the far edge. A box seen
+    so hides nothing: the guess is on the safe side.
+    """
+    if workspace.viewpoint is None:
+        return np.zeros(len(placed)), np.zeros(len(placed))
+    sight = unit(placed.origin - workspace.viewpoint)
+    across = np.einsum("gi,gi->g", sight, placed.rotation[:, :, 1])
+    along = np.einsum("gi,gi->g", sight, placed.rotation[:, :, 2])
+    cos = along / np.maximum(np.hypot(across, along), 1e-9)
+    ratio = np.minimum((1 - cos) / np.maximum(1 + cos, 1e-3), _MAX_HIDDEN)
+    spare = np.maximum(hand.max_width - width, 0.0)
+    hidden = np.minimum(ratio * width, spare)
+    return np.where(across < 0, hidden, 0.0), np.where(across > 0, hidden, 0.0)
+
+
+def _span(values: NDArray[np.float32], mask: Mask) -> tuple[Array, Array]:
+    """Return smallest and largest masked value (G,), zero in rows without one."""
+    low = np.where(mask, values, np.inf).min(axis=1)
+    high = np.where(mask, values, -np.inf).max(axis=1)
+    return np.where(np.isfinite(low), low, 0.0), np.where(np.isfinite(high), high, 0.0)

@@ -1,0 +1,214 @@
+"""Hand search: where, how wide and how deep each oriented hand can reach around the part.
+
+A hand that moves straight along its approach sweeps everything in front of its
+fingers. So for each hand the surface within the width of a finger is reduced to
+its profile: the nearest depth over bins of the closing direction. A finger fits
+wherever the profile stays deeper than its tip over its own thickness; the part is
+what lies between the nearest two such places left and right of the sample.
+"""
+
+from __future__ import annotations
+
+from collections import Counter
+from dataclasses import dataclass
+
+import numpy as np
+from numpy.typing import NDArray
+from scipy.spatial import cKDTree
+
+from services.grasp_proposal.hand import Hand
+from services.grasp_proposal.orientations import Hands
+from services.grasp_proposal.workspace import Workspace
+
+Array = NDArray[np.float64]
+Mask = NDArray[np.bool_]
+
+_BIN = 0.0025
+_SLAB_MARGIN = 0.0015
+_TIP_MARGIN = 0.001
+_DEPTHS = np.array([0.005, 0.010, 0.016, 0.023, 0.031, 0.041])
+_LEAST_DEPTH = 0.0005
+_GOOD_ENGAGEMENT = 0.022
+_CHUNK_POINTS = 60_000
+
+
+@dataclass(frozen=True)
+class Placements:
+    """Hands with a place, one row each, coordinates in the workspace.
+
+    Attributes
+    ----------
+    rotation : (G, 3, 3) array
+        Columns x, y (closing), z (approach).
+    origin : (G, 3) array
+        The surface point that the hand was tried at.
+    tip : (G,) array
+        How far the finger tips reach past the origin along z.
+    left, right : (G,) arrays
+        Edges of the part along y, from the origin, left < right.
+    front : (G,) array
+        Where the part begins along z.
+    """
+
+    rotation: Array
+    origin: Array
+    tip: Array
+    left: Array
+    right: Array
+    front: Array
+
+    def take(self, chosen: NDArray[np.intp] | Mask) -> Placements:
+        """Return the chosen rows."""
+        return Placements(
+            self.rotation[chosen],
+            self.origin[chosen],
+            self.tip[chosen],
+            self.left[chosen],
+            self.right[chosen],
+            self.front[chosen],
+        )
+
+    def __len__(self) -> int:
+        return len(self.tip)
+
+
+def search(
+    workspace: Workspace, hand: Hand, points: Array, hands: Hands, rejected: Counter[str]
+) -> Placements:
+    """Return at most one placement per hand: the depth that holds the part best.
+
+    Parameters
+    ----------
+    points : (S, 3) array
+        Where the hands are tried.
+    hands : Hands
+        K orientations at each.
+    rejected : Counter
+        Every hand pose (orientation and depth) that is left out is counted here.
+    """
+    reach = hand.max_opening + hand.finger_thickness + 3 * hand.clearance
+    tree = cKDTree(workspace.coarse)
+    radius = float(np.hypot(reach, hand.finger_length))
+    near = [list(group) for group in np.atleast_1d(tree.query_ball_point(points, radius))]
+    longest = max(map(len, near))
+    padded = np.vstack([workspace.coarse, np.full(3, 1e6)]).astype(np.float32)
+    chunk = max(1, _CHUNK_POINTS // max(1, longest * hands.rotations.shape[1] // 8))
+    found = []
+    for start in range(0, len(points), chunk):
+        rows = slice(start, start + chunk)
+        index = np.full((len(points[rows]), longest), len(workspace.coarse))
+        for row, group in enumerate(near[rows]):
+            index[row, : len(group)] = group
+        around = padded[index] - points[rows, None].astype(np.float32)
+        profile, half = _profiles(around, hands.rotations[rows], hand, reach)
+        possible = hands.possible[rows].ravel()
+        rotation = hands.rotations[rows].reshape(-1, 3, 3)[possible]
+        origin = np.repeat(points[rows], hands.rotations.shape[1], axis=0)[possible]
+        rejected["collision_support"] += int((~possible).sum())
+        found.append(_place(workspace, hand, rotation, origin, profile[possible], half, rejected))
+    return _join(found)
+
+
+def _profiles(
+    around: NDArray[np.float32], rotations: Array, hand: Hand, reach: float
+) -> tuple[NDArray[np.float32], int]:
+    """Return the profile (S*K, 2*half+1) of the points (S, n, 3) before each hand (S, K)."""
+    count, kinds = rotations.shape[:2]
+    half = int(np.ceil(reach / _BIN))
+    bins = 2 * half + 1
+    axes = rotations.astype(np.float32).transpose(3, 0, 2, 1)  # x, y, z: each (S, 3, K)
+    in_slab = np.abs(around @ axes[0]) < hand.finger_width / 2 + _SLAB_MARGIN
+    y = around @ (axes[1] / np.float32(_BIN))
+    in_slab &= np.abs(y) < half + 0.49
+    chosen = np.flatnonzero(in_slab)
+    z = (around @ axes[2]).ravel()[chosen]
+    of_hand = np.arange(count)[:, None, None] * kinds + np.arange(kinds)
+    first = np.broadcast_to((of_hand * bins + half).astype(np.int32), in_slab.shape)
+    cell = first[in_slab] + np.rint(y.ravel()[chosen]).astype(np.int32)
+    profile = np.full(count * kinds * bins, np.inf, dtype=np.float32)
+    np.minimum.at(profile, cell, z)
+    return profile.reshape(count * kinds, bins), half
+
+
+def _place(
+    workspace: Workspace,
+    hand: Hand,
+    rotation: Array,
+    origin: Array,
+    profile: NDArray[np.float32],
+    half: int,
+    rejected: Counter[str],
+) -> Placements:
+    tip, tried = _depths(workspace, hand, rotation, origin)
+    rejected["collision_support"] += int((~tried.any(axis=1)).sum())
+    occupied = profile[:, None, :] < (tip + _TIP_MARGIN)[:, :, None]
+    need = int(np.ceil((hand.finger_thickness + hand.clearance) / _BIN)) + 1
+    right = _first_gap(occupied[:, :, half:], need)
+    left = _first_gap(occupied[:, :, half::-1], need)
+    enclosed = (right >= 0) & (left >= 0)
+    width = (right + left + 1) * _BIN
+    fits = enclosed & (width <= hand.max_width)
+    steps = np.arange(profile.shape[1]) - half
+    between = (steps >= -left[:, :, None]) & (steps <= right[:, :, None])
+    front = np.where(between, profile[:, None, :], np.inf).min(axis=2)
+    clear = front > tip - hand.finger_length + hand.palm_clearance
+    rejected["too_wide"] += int((tried & ~fits).sum())
+    rejected["collision_object"] += int((tried & fits & ~clear).sum())
+    good = tried & fits & clear
+    value = np.minimum(tip - front, _GOOD_ENGAGEMENT) / _GOOD_ENGAGEMENT
+    value = np.where(good, value * (1 - 0.5 * width / hand.max_opening), -np.inf)
+    best = np.argmax(value, axis=1)
+    rows = np.nonzero(good.any(axis=1))[0]
+    rejected["other_depth_better"] += int(good.sum()) - len(rows)
+    pick = (rows, best[rows])
+    return Placements(
+        rotation[rows],
+        origin[rows],
+        tip[pick],
+        -(left[pick] + 0.5) * _BIN,
+        (right[pick] + 0.5) * _BIN,
+        front[pick].astype(np.float64),
+    )
+
+
+def _depths(workspace: Workspace, hand: Hand, rotation: Array, origin: Array) -> tuple[Array, Mask]:
+    """Return tip depths (H, D) past the origin, and which of them to try."""
+    tip = np.broadcast_to(_DEPTHS, (len(rotation), len(_DEPTHS)))
+    if workspace.up is None or workspace.support_offset is None:
+        return tip, np.ones(tip.shape, dtype=np.bool_)
+    rise = np.einsum("hij,i->hj", rotation, workspace.up)
+    corner = np.abs(rise[:, 0]) * hand.finger_width / 2 + np.abs(rise[:, 1]) * hand.finger_thickness
+    room = workspace.heights(origin) - corner - hand.support_clearance
+    deepest = np.where(
+        rise[:, 2] < -0.02,
+        room / np.maximum(-rise[:, 2], 0.02),
+        np.where(room > 0, np.inf, -np.inf),
+    )
+    limited = np.minimum(tip, deepest[:, None])
+    repeated = np.zeros(tip.shape, dtype=np.bool_)
+    repeated[:, 1:] = limited[:, 1:] <= limited[:, :-1]
+    tried = (limited >= _LEAST_DEPTH) & ~repeated
+    return np.maximum(limited, 0.0), tried
+
+
+def _first_gap(occupied: Mask, need: int) -> NDArray[np.int64]:
+    """Return the last occupied bin before the first run of `need` free ones, else -1.
+
+    `occupied` is (H, D, n), counted outwards from the sample's own bin.
+    """
+    free = np.zeros(occupied.shape[:2], dtype=np.int64)
+    last = np.full(occupied.shape[:2], -1, dtype=np.int64)
+    for step in range(occupied.shape[2]):
+        free = np.where(occupied[:, :, step], 0, free + 1)
+        done = (free == need) & (last < 0)
+        last[done] = max(step - need, 0)
+    return last
+
+
+def _join(parts: list[Placements]) -> Placements:
+    return Placements(
+        *(
+            np.concatenate([getattr(part, name) for part in parts])
+            for name in ("rotation", "origin", "tip", "left", "right", "front")
+        )
+    )

@@ -1,0 +1,226 @@
+"""What a grasp is planned in: the request's points, thinned, in a frame of their own."""
+
+from __future__ import annotations
+
+import itertools
+from dataclasses import dataclass
+
+import numpy as np
+from numpy.typing import NDArray
+
+from services.grasp_proposal.surface import estimate_normals
+from shared.errors import EmptyCloud, InvalidInput
+from shared.geometry.points import principal_axes
+from shared.geometry.rotation import frame_from_z, unit
+from shared.geometry.se3 import inverse, pose_matrix, transform_points
+from shared.schemas.grasp import ProposeRequest
+
+Array = NDArray[np.float64]
+Mask = NDArray[np.bool_]
+
+MIN_POINTS = 10
+_MAX_COORDINATE = 1e4
+_FINE, _FINE_COUNT = (0.0015, 0.002, 0.0025, 0.003, 0.004), 3500
+_COARSE, _COARSE_COUNT = (0.003, 0.004, 0.005, 0.006), 1200
+_OBSTACLES = (0.004,)
+_MAX_POINTS = 20_000
+_HAND_REACH = 0.5
+_STEEP = 0.98
+
+
+@dataclass(frozen=True)
+class Workspace:
+    """The object in its surroundings.
+
+    The frame is tied to the scene: z is up (without a support plane or an up
+    direction: towards the sensor), x points away from the sensor, the origin is
+    the object's centroid. All that follows happens in it, so that a moved scene
+    gives the same grasps, moved.
+
+    Attributes
+    ----------
+    points, normals : (N, 3) arrays
+        The object's surface, for exact checks; normals point outwards.
+    in_focus : (N,) bool array
+        Where grasps are wanted.
+    coarse, coarse_normals : (M, 3) arrays
+        The same surface with fewer points, for searching.
+    obstacles : (K, 3) array
+    up : (3,) array or None
+    support_offset : float or None
+        A point is `up . p + support_offset` above the support plane.
+    viewpoint : (3,) array or None
+        None when it lies among the points, so that nothing follows from it.
+    outer_from_work : (4, 4) array
+        Motion into the request's frame.
+    """
+
+    points: Array
+    normals: Array
+    in_focus: Mask
+    coarse: Array
+    coarse_normals: Array
+    obstacles: Array
+    up: Array | None
+    support_offset: float | None
+    viewpoint: Array | None
+    outer_from_work: Array
+
+    @property
+    def centre_of_mass(self) -> Array:
+        """Mean (3,) of the evenly thinned surface."""
+        return np.asarray(self.coarse.mean(axis=0))
+
+    def heights(self, points: Array) -> Array:
+        """Return heights (...,) of points (..., 3) above the support plane, inf without one."""
+        if self.up is None or self.support_offset is None:
+            return np.full(points.shape[:-1], np.inf)
+        return np.asarray(points @ self.up + self.support_offset)
+
+
+def build_workspace(request: ProposeRequest) -> Workspace:
+    """Check a request and return its workspace.
+
+    Raises
+    ------
+    EmptyCloud
+        Fewer than ten points.
+    InvalidInput
+        Non-finite or absurdly far points, a focus of another length or without
+        a point, a zero direction.
+    """
+    points, focus = _checked(request)
+    order = np.lexsort((focus, *points.T))
+    points, focus = points[order], focus[order]
+    up, offset = _up_direction(request)
+    viewpoint = _usable_viewpoint(np.asarray(request.viewpoint, dtype=np.float64), points)
+    outer_from_work = _scene_frame(points, up, viewpoint)
+    work_from_outer = inverse(outer_from_work)
+    if up is not None:
+        if offset is not None:
+            offset += float(up @ outer_from_work[:3, 3])
+        up = work_from_outer[:3, :3] @ up
+    points = transform_points(work_from_outer, points)
+    fine = thin(points, _FINE, _FINE_COUNT)
+    kept, kept_focus = points[fine], focus[fine]
+    if not kept_focus.any():  # the focus is smaller than a voxel
+        kept = np.vstack([kept, points[focus][:1]])
+        kept_focus = np.append(kept_focus, True)
+    seen_from = None if viewpoint is None else transform_points(work_from_outer, viewpoint[None])[0]
+    obstacles = np.empty((0, 3))
+    if request.obstacle_points is not None and len(request.obstacle_points):
+        obstacles = transform_points(work_from_outer, request.obstacle_points)
+        low, high = points.min(axis=0) - _HAND_REACH, points.max(axis=0) + _HAND_REACH
+        obstacles = obstacles[((obstacles >= low) & (obstacles <= high)).all(axis=1)]
+        obstacles = obstacles[thin(obstacles, _OBSTACLES, _MAX_POINTS)]
+    coarse = thin(kept, _COARSE, _COARSE_COUNT)
+    normals = estimate_normals(kept, kept[coarse], seen_from)
+    return Workspace(
+        points=kept,
+        normals=normals,
+        in_focus=kept_focus,
+        coarse=kept[coarse],
+        coarse_normals=normals[coarse],
+        obstacles=obstacles,
+        up=up,
+        support_offset=offset,
+        viewpoint=seen_from,
+        outer_from_work=outer_from_work,
+    )
+
+
+def thin(points: Array, voxels: tuple[float, ...], enough: int) -> NDArray[np.intp]:
+    """Return indices of one point per voxel, in rising order.
+
+    The first voxel size (metres) that leaves at most `enough` points is taken,
+    else the last, doubled until 20,000 suffice. Clouds of up to 200 points stay whole.
+    """
+    first = np.arange(len(points))
+    if len(points) <= 200:
+        return first
+    low = points.min(axis=0)
+    finest = float(np.ptp(points, axis=0).max()) / 1e6
+    doubled = (voxels[-1] * 2.0**k for k in range(1, 64))
+    for step, voxel in enumerate(itertools.chain(voxels, doubled)):
+        cells = np.floor((points[first] - low) / max(voxel, finest)).astype(np.int64)
+        span = cells.max(axis=0) + 1
+        key = (cells[:, 0] * span[1] + cells[:, 1]) * span[2] + cells[:, 2]
+        first = first[np.sort(np.unique(key, return_index=True)[1])]
+        if len(first) <= (enough if step < len(voxels) - 1 else _MAX_POINTS):
+            break
+    return first
+
+
+def _checked(request: ProposeRequest) -> tuple[Array, Mask]:
+    for name in ("points", "obstacle_points"):
+        array = getattr(request, name)
+        if array is None:
+            continue
+        if not np.isfinite(array).all():
+            raise InvalidInput(f"{name} must be finite", field=name, allowed="finite metres")
+        if len(array) and np.abs(array).max() > _MAX_COORDINATE:
+            raise InvalidInput(
+                f"{name} reach {np.abs(array).max():.3g} m; are they in metres?",
+                field=name,
+                found=float(np.abs(array).max()),
+                allowed=_MAX_COORDINATE,
+            )
+    points = request.points
+    if len(points) < MIN_POINTS:
+        raise EmptyCloud(
+            f"points holds {len(points)} points, at least {MIN_POINTS} are needed",
+            field="points",
+            found=len(points),
+            allowed=MIN_POINTS,
+        )
+    if request.focus is None:
+        return points, np.ones(len(points), dtype=np.bool_)
+    if len(request.focus) != len(points):
+        raise InvalidInput(
+            f"focus has {len(request.focus)} entries for {len(points)} points",
+            field="focus",
+            found=len(request.focus),
+            allowed=len(points),
+        )
+    if not request.focus.any():
+        raise InvalidInput("focus has no true entry: there is nothing to grasp", field="focus")
+    return points, request.focus
+
+
+def _up_direction(request: ProposeRequest) -> tuple[Array | None, float | None]:
+    if request.plane is not None:
+        normal = np.asarray(request.plane.normal, dtype=np.float64)
+        length = float(np.linalg.norm(normal))
+        if not length > 0:
+            raise InvalidInput("the plane's normal must not be zero", field="plane.normal")
+        return normal / length, request.plane.offset / length
+    if request.up is not None:
+        if not np.linalg.norm(request.up) > 0:
+            raise InvalidInput("up must not be zero", field="up")
+        return unit(request.up), None
+    return None, None
+
+
+def _usable_viewpoint(viewpoint: Array, points: Array) -> Array | None:
+    """Return the viewpoint unless it lies among the points or next to them."""
+    rays = unit(points - viewpoint)
+    mean = rays.mean(axis=0)
+    if np.linalg.norm(mean) < 0.5 or (rays @ unit(mean)).min() < 0.3:
+        return None
+    return viewpoint
+
+
+def _scene_frame(points: Array, up: Array | None, viewpoint: Array | None) -> Array:
+    centre = points.mean(axis=0)
+    view = None if viewpoint is None else unit(centre - viewpoint)
+    _, axes = principal_axes(points)
+    long_axis = _signed(axes[:, 0], points)
+    z_axis = up if up is not None else -view if view is not None else _signed(axes[:, 2], points)
+    hint = view if view is not None and abs(view @ z_axis) < _STEEP else long_axis
+    return pose_matrix(centre, frame_from_z(z_axis, hint))
+
+
+def _signed(axis: Array, points: Array) -> Array:
+    """Return the axis with the sign that makes the points' skewness along it positive."""
+    along = (points - points.mean(axis=0)) @ axis
+    return axis if (along**3).sum() >= 0 else -axis

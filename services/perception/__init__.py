@@ -1,0 +1,1 @@
+"""Perception: find the support plane in one depth view, and the object to grasp on it."""

@@ -1,0 +1,49 @@
+"""How far measurements of a flat surface scatter, as a function of their range."""
+
+from __future__ import annotations
+
+from dataclasses import dataclass
+
+import numpy as np
+from numpy.typing import NDArray
+
+Array = NDArray[np.float64]
+
+SIGMA_PER_MEDIAN = 1.4826
+"""Standard deviation of a normal distribution over its median absolute value."""
+_FLOOR_M = 1e-5
+
+
+@dataclass(frozen=True)
+class NoiseProfile:
+    """Standard deviation of heights over a plane, piecewise linear in the range.
+
+    Attributes
+    ----------
+    ranges : (B,) array
+        Distances from the sensor, metres, increasing.
+    sigmas : (B,) array
+        Standard deviations at these ranges, metres, positive.
+    """
+
+    ranges: Array
+    sigmas: Array
+
+    def at(self, ranges: Array) -> Array:
+        """Return the standard deviation at `ranges`, constant beyond the ends."""
+        return np.interp(ranges, self.ranges, self.sigmas)
+
+
+def measure_noise(heights: Array, ranges: Array, bins: int = 8) -> NoiseProfile:
+    """Return the profile of surface points with these heights and ranges, both (N,), N >= 1.
+
+    Stereo depth scatters with the square of the depth, other sensors otherwise; so the
+    surface itself is asked. In each of `bins` equally filled classes of range the median
+    absolute height, which things on the surface hardly move, gives the deviation. It is
+    taken about the plane, not about the class's own median, so that a warp counts too.
+    """
+    order = np.argsort(ranges, kind="stable")
+    parts = np.array_split(order, min(bins, max(1, len(order) // 50)))
+    sigmas = [SIGMA_PER_MEDIAN * np.median(np.abs(heights[part])) for part in parts]
+    middles = [np.median(ranges[part]) for part in parts]
+    return NoiseProfile(np.array(middles), np.maximum(np.array(sigmas), _FLOOR_M))

@@ -1,0 +1,73 @@
+"""Metres, told from millimetres."""
+
+from __future__ import annotations
+
+import numpy as np
+from numpy.typing import NDArray
+
+from shared.errors import WrongUnits
+from shared.schemas.scene import InputKind
+
+Array = NDArray[np.float64]
+
+MAX_EXTENT_M = {"scene": 50.0, "object": 5.0}
+"""Wider than this cannot be metres: a table seen in millimetres spans hundreds."""
+_SAMPLE = 5000
+
+
+def require_metres(everything: Array, kind: InputKind, field: str) -> None:
+    """Raise WrongUnits when points (N, 3), finite or not, span too much.
+
+    Only the extent is asked, so that a frame far away does no harm, and the outermost
+    twentieths on each side are left out.
+    """
+    sample = _finite_sample(everything)
+    if len(sample) == 0:
+        return
+    with np.errstate(over="ignore"):
+        low, high = np.percentile(sample, [5, 95], axis=0)
+        extent = float((high - low).max())
+    allowed = MAX_EXTENT_M[kind]
+    if extent > allowed:
+        remedy = "divide them by 1000"
+        if field == "depth":
+            remedy = "give depth_scale in metres per unit (0.001 for millimetres)"
+        raise WrongUnits(
+            f"{field} span {extent:.4g} m, which looks like millimetres: "
+            f"coordinates must be in metres; {remedy}",
+            field=field,
+            found=f"extent {extent:.4g}" if np.isfinite(extent) else "extent without bound",
+            allowed=f"extent up to {allowed:g} m for input = {kind}",
+        )
+
+
+def checked_target(target: tuple[float, float, float], points: Array) -> Array:
+    """Return `target` as an array (3,), if it may belong to points (N, 3).
+
+    Raises
+    ------
+    WrongUnits
+        It is so far from all points that it must be in millimetres.
+    """
+    low, high = points.min(axis=0), points.max(axis=0)
+    point = np.array(target)
+    away = float(np.maximum(low - point, point - high).max())
+    if away > MAX_EXTENT_M["scene"]:
+        raise WrongUnits(
+            f"target {list(target)} is {away:.4g} m away from all points, which looks like "
+            "millimetres: it must be in metres, in the frame of the view",
+            field="target",
+            found=list(target),
+            allowed="metres, near the points",
+        )
+    return point
+
+
+def _finite_sample(everything: Array) -> Array:
+    """Return some finite points of all, or all of them where they are rare."""
+    for step in (max(1, len(everything) // _SAMPLE), 1):
+        sample = everything[::step]
+        sample = sample[np.isfinite(sample).all(axis=1)]
+        if len(sample) > 100:
+            break
+    return sample

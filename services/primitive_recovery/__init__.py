@@ -1,0 +1,1 @@
+"""Decompose an object's visible points into superquadrics and name their shapes."""

@@ -1,0 +1,76 @@
+"""The stage: object points in, classified primitives out."""
+
+from __future__ import annotations
+
+import numpy as np
+
+from services.primitive_recovery.classify import ShapeClassifier
+from services.primitive_recovery.ems.hierarchy import Part, decompose
+from services.primitive_recovery.ems.overlap import kept_after_overlap
+from services.primitive_recovery.ems.presets import PRESETS
+from services.primitive_recovery.settings import PrimitiveRecoverySettings
+from services.primitive_recovery.validation import checked_cloud
+from shared.schemas.primitive import Primitive, RecoverRequest, RecoverResponse, ShapeClass
+from shared.superquadric import Superquadric
+
+
+class PrimitiveRecovery:
+    """Decompose, remove overlap, classify (thesis 3.2, 4.1, 4.2).
+
+    Safe to call from several threads at once.
+
+    Parameters
+    ----------
+    settings : PrimitiveRecoverySettings
+    """
+
+    def __init__(self, settings: PrimitiveRecoverySettings) -> None:
+        self._settings = settings
+        self._classifier = ShapeClassifier()
+
+    def recover(self, request: RecoverRequest) -> RecoverResponse:
+        """Return the primitives of an object's points, largest support first.
+
+        Raises
+        ------
+        EmptyCloud, DegenerateCloud, InvalidInput, WrongUnits, PayloadTooLarge
+            See `checked_cloud`.
+        """
+        points = checked_cloud(request.points, self._settings.max_points)
+        parameters = PRESETS[request.preset or self._settings.preset]
+        rng = np.random.default_rng(request.seed)
+        viewpoint = np.array(request.viewpoint)
+        parts = decompose(points, parameters, viewpoint, self._settings.fit_points, rng)
+        kept = kept_after_overlap([part.superquadric for part in parts], rng)
+        remaining = [parts[index] for index in kept]
+        shapes = self._classifier.classify([part.superquadric for part in remaining])
+        return RecoverResponse(
+            primitives=tuple(
+                _primitive(index, part, shape, probability)
+                for index, (part, (shape, probability)) in enumerate(
+                    zip(remaining, shapes, strict=True)
+                )
+            ),
+            removed_as_overlap=len(parts) - len(remaining),
+        )
+
+    def warm_up(self) -> None:
+        """Compile all kernels, so that the first request is as fast as the next."""
+        rng = np.random.default_rng(0)
+        directions = rng.normal(size=(600, 3))
+        ball = 0.03 * directions / np.linalg.norm(directions, axis=1, keepdims=True)
+        rod = rng.uniform(-1.0, 1.0, (600, 3)) * np.array([0.005, 0.005, 0.1])
+        self.recover(RecoverRequest(points=np.vstack([ball, rod + np.array([0.0, 0.0, 0.13])])))
+
+
+def _primitive(index: int, part: Part, shape: ShapeClass, probability: float) -> Primitive:
+    superquadric: Superquadric = part.superquadric
+    return Primitive(
+        id=index,
+        parameters=tuple(superquadric.to_vector().tolist()),
+        shape_class=shape,
+        shape_probability=probability,
+        full_extents=superquadric.full_extents,
+        residual_mm=1e3 * part.residual,
+        support=part.support,
+    )

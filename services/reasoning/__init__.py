@@ -1,0 +1,1 @@
+"""Reasoning: from primitives and a task to the part to hold, proved in Prolog."""

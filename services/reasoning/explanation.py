@@ -1,0 +1,120 @@
+"""One readable paragraph about a proof, with lengths in millimetres.
+
+Every number and every verdict comes from Prolog; only the wording is ours.
+"""
+
+from __future__ import annotations
+
+from collections.abc import Mapping, Sequence
+
+from services.reasoning.wording import failing_wish, holding_clause, joined, size_of
+from shared.errors import JsonObject
+from shared.schemas.primitive import Primitive
+
+Parts = Mapping[int, Primitive]
+
+
+def explain_found(task: str, decision: JsonObject, parts: Parts) -> str:
+    """Say which part to hold, by which rules, and which condition was closest to failing."""
+    region, traces = decision["regions"][0], decision["traces"]
+    sentences = [_what_to_hold(task, region), *(_why(trace, parts) for trace in traces)]
+    close = _closest_call(traces)
+    if close:
+        sentences.append(close)
+    others = [part for other in decision["regions"][1:] for part in other["parts"]]
+    if others:
+        sentences.append(f"{joined([f'Part {part}' for part in others])} would do as well.")
+    return " ".join(sentences)
+
+
+def explain_miss(
+    task: str, why: str, miss: JsonObject | None, parts: Parts, lacking: Sequence[str]
+) -> str:
+    """Say that nothing was found, and what came closest to changing that."""
+    if miss is None:
+        return why
+    failing = [each for each in miss["conditions"] if not each["holds"]]
+    kind = failing[0]["kind"]
+    if kind == "avoided":
+        return f"{why} {_nearly_free(failing[0])}"
+    affordance = miss["rule"].rsplit(":", 1)[1] if "/version2:" in miss["rule"] else None
+    role = f"would count as {affordance}" if affordance else f"could be held for {task}"
+    main = miss["part"]
+    others = sorted(set(miss["bindings"].values()) - {main})
+    wishes = joined([failing_wish(each, own=each["part"] == main) for each in failing])
+    beside = f" beside {joined([_named(part, parts) for part in others])}" if others else ""
+    missing = "" if len(lacking) < 2 else f" Of {joined(lacking)}, {affordance} is nearest."
+    return (
+        f"{why}{missing} The nearest miss, of the rule {miss['rule']}: "
+        f"{_named(main, parts)}{beside} {role} if {wishes}."
+    )
+
+
+def _what_to_hold(task: str, region: JsonObject) -> str:
+    numbers = region["parts"]
+    what = f"part {numbers[0]}" if len(numbers) == 1 else f"any of the parts {joined(numbers)}"
+    label = region["affordance"]
+    why = f": it is the part to {label.replace('_', ' ')}" if label else ""
+    return f"Hold {what} for {task}{why}."
+
+
+def _why(trace: JsonObject, parts: Parts) -> str:
+    rule = trace["rule"]
+    if rule.startswith("relations:"):
+        return _relations(trace["conditions"])
+    grouped: dict[int | None, list[str]] = {}
+    for condition in trace["conditions"]:
+        grouped.setdefault(condition["part"], []).append(holding_clause(condition))
+    told = [
+        f"{_named(part, parts)} {joined([clause for clause in clauses if clause])}"
+        for part, clauses in grouped.items()
+        if part is not None and any(clauses)
+    ]
+    return f"The rule {rule} holds: {'; '.join(told)}."
+
+
+def _relations(conditions: Sequence[JsonObject]) -> str:
+    told = []
+    required = [each for each in conditions if "requiresAffordance" in each["predicate"]]
+    if required:
+        listed = joined([f"{each['measured']} (part {each['part']})" for each in required])
+        told.append(f"The object has what the task requires: {listed}.")
+    freed = [each for each in conditions if each["kind"] == "avoided"]
+    if freed:
+        labels = joined(sorted({each["measured"] for each in freed}))
+        listed = "; ".join(_not_avoided(each) for each in freed)
+        told.append(f"The task leaves parts that count as {labels} free: {listed}.")
+    return " ".join(told)
+
+
+def _not_avoided(condition: JsonObject) -> str:
+    because = condition.get("because")
+    reason = f", which it would if {failing_wish(because, own=True)}" if because else ""
+    return f"part {condition['part']} does not count as {condition['measured']}{reason}"
+
+
+def _nearly_free(condition: JsonObject) -> str:
+    because = condition.get("because")
+    tight = f", least clearly because it {holding_clause(because)}" if because else ""
+    part, label = condition["part"], condition["measured"]
+    return f"Nearest to being held is part {part}: it counts as {label}{tight}."
+
+
+def _closest_call(traces: Sequence[JsonObject]) -> str:
+    measured = [
+        condition
+        for trace in traces
+        for condition in trace["conditions"]
+        if condition["kind"] in ("min_dimension", "max_dimension", "min_ratio", "max_ratio")
+        and condition["support"] is not None
+        and condition["support"] < 0.95
+    ]
+    if not measured:
+        return ""
+    closest = min(measured, key=lambda each: float(each["support"]))
+    return f"The closest call: part {closest['part']} {holding_clause(closest)}."
+
+
+def _named(part: int, parts: Parts) -> str:
+    primitive = parts[part]
+    return f"part {part} (a {primitive.shape_class} of {size_of(primitive.full_extents)})"

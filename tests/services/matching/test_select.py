@@ -1,0 +1,93 @@
+from __future__ import annotations
+
+import numpy as np
+import pytest
+from hypothesis import given
+from hypothesis import strategies as st
+
+from services.matching.select import select_grasps
+from shared.errors import EmptyCloud, InvalidInput
+from shared.geometry.se3 import transform_points
+from shared.schemas.grasp import SelectRequest, SelectResponse
+from tests.services.matching.clouds import some_motion
+
+LINE = np.column_stack([np.linspace(0, 0.2, 21), np.zeros(21), np.zeros(21)])
+LEFT = LINE[:, 0] < 0.095
+
+
+def grasps_at(*rows: tuple[float, float]) -> np.ndarray:
+    """Return grasps at x with a score, 3 cm above the line."""
+    return np.array([[x, 0, 0.03, 0, 0, 0, 1, 0.02, score] for x, score in rows]).reshape(-1, 9)
+
+
+def select(grasps: np.ndarray, **changes: object) -> SelectResponse:
+    fields = {"points": LINE, "point_region": LEFT, "grasps": grasps} | changes
+    return select_grasps(SelectRequest.model_validate(fields))
+
+
+def test_keeps_grasps_in_the_region_best_first() -> None:
+    grasps = grasps_at((0.01, 0.2), (0.15, 0.9), (0.05, 0.7), (0.03, 0.5))
+    answer = select(grasps)
+    assert answer.indices.tolist() == [2, 3, 0]
+    assert np.array_equal(answer.grasps, grasps[[2, 3, 0]])
+    assert answer.outside_region == 1
+
+
+def test_at_most_max_grasps_but_counts_all_outside() -> None:
+    grasps = grasps_at((0.15, 0.9), (0.01, 0.2), (0.05, 0.7), (0.19, 0.1))
+    answer = select(grasps, max_grasps=1)
+    assert answer.indices.tolist() == [2]
+    assert answer.outside_region == 2
+    assert len(select(grasps, max_grasps=0).grasps) == 0
+
+
+def test_equal_scores_keep_the_order_of_the_request() -> None:
+    assert select(grasps_at((0.05, 0.5), (0.01, 0.5), (0.03, 0.5))).indices.tolist() == [0, 1, 2]
+
+
+def test_a_point_between_two_parts_counts_as_in_the_region_whatever_the_order() -> None:
+    points = np.array([[0.0, 0, 0], [0.1, 0, 0]])
+    for region in ([True, False], [False, True]):
+        answer = select(grasps_at((0.05, 0.5)), points=points, point_region=np.array(region))
+        assert answer.indices.tolist() == [0]
+
+
+def test_nothing_in_nothing_out() -> None:
+    empty = select(np.empty((0, 9)))
+    assert empty.grasps.shape == (0, 9)
+    assert empty.outside_region == 0
+    nowhere = select(grasps_at((0.01, 0.2)), point_region=np.zeros(21, dtype=bool))
+    assert nowhere.grasps.shape == (0, 9)
+    assert nowhere.outside_region == 1
+    bare = select(np.empty((0, 9)), points=np.empty((0, 3)), point_region=np.empty(0, dtype=bool))
+    assert bare.indices.shape == (0,)
+
+
+def test_a_rigid_motion_changes_nothing() -> None:
+    grasps = grasps_at((0.01, 0.2), (0.15, 0.9), (0.05, 0.7), (0.03, 0.5))
+    moved = grasps.copy()
+    moved[:, :3] = transform_points(some_motion(), grasps[:, :3])
+    answer = select(moved, points=transform_points(some_motion(), LINE))
+    assert answer.indices.tolist() == select(grasps).indices.tolist()
+
+
+@given(st.permutations(range(21)), st.permutations(range(4)))
+def test_orders_of_points_and_grasps_do_not_matter(points: list[int], rows: list[int]) -> None:
+    grasps = grasps_at((0.01, 0.2), (0.15, 0.9), (0.05, 0.7), (0.03, 0.5))
+    answer = select(grasps[rows], points=LINE[points], point_region=LEFT[points])
+    assert np.array_equal(answer.grasps, select(grasps).grasps)
+    assert np.array_equal(grasps[rows][answer.indices], answer.grasps)
+
+
+def test_bad_input_is_named() -> None:
+    grasp = grasps_at((0.01, 0.2))
+    with pytest.raises(InvalidInput, match="point_region has 3 entries for 21 points"):
+        select(grasp, point_region=np.ones(3, dtype=bool))
+    with pytest.raises(InvalidInput, match="points must be finite"):
+        select(grasp, points=LINE * np.nan)
+    with pytest.raises(InvalidInput, match="grasps must be finite"):
+        select(np.full_like(grasp, np.inf))
+    with pytest.raises(InvalidInput, match="metres"):
+        select(grasp, points=LINE + 1e200)
+    with pytest.raises(EmptyCloud, match="1 grasps"):
+        select(grasp, points=np.empty((0, 3)), point_region=np.empty(0, dtype=bool))

@@ -1,0 +1,131 @@
+"""One superquadric from one cloud."""
+
+from __future__ import annotations
+
+import dataclasses
+
+import numpy as np
+import pytest
+
+from services.primitive_recovery.ems.presets import PRESETS, Parameters
+from services.primitive_recovery.ems.recovery import Fit, recover_one
+from shared.superquadric import radial_distance
+from tests.services.primitive_recovery.clouds import (
+    Array,
+    overlap,
+    random_superquadric,
+    superquadric,
+    surface_points,
+)
+
+SIMULATION = PRESETS["simulation"]
+NOISE = 0.0015
+
+
+def fit(points: Array, parameters: Parameters = SIMULATION, fit_points: int = 1000) -> Fit:
+    return recover_one(points, parameters, np.zeros(3), fit_points, np.random.default_rng(0))
+
+
+@pytest.fixture(scope="module")
+def trials() -> dict[str, Array]:
+    """Surface error in mm and overlap (24, 2) per kind of cloud, over the whole range of shapes."""
+    rng = np.random.default_rng(1)
+    found: dict[str, list[list[float]]] = {"noisy": [], "one view": [], "clutter": []}
+    for _ in range(24):
+        body = random_superquadric(rng)
+        truth = surface_points(body, 1500, rng)
+        clouds = {
+            "noisy": truth,
+            "one view": surface_points(body, 1500, rng, one_view=True),
+            "clutter": truth[:600],
+        }
+        for kind, cloud in clouds.items():
+            noisy = cloud + NOISE * rng.normal(size=cloud.shape)
+            if kind == "clutter":
+                middle = (truth.min(0) + truth.max(0)) / 2
+                outliers = rng.uniform(-0.75, 0.75, (900, 3)) * np.ptp(truth, axis=0)
+                noisy = np.vstack([noisy, middle + outliers])
+            recovered = fit(noisy).superquadric
+            reference = cloud if kind == "one view" else truth
+            error = 1e3 * np.abs(radial_distance(recovered, reference)).mean()
+            found[kind].append([float(error), overlap(body, recovered, rng)])
+    return {kind: np.array(rows) for kind, rows in found.items()}
+
+
+@pytest.mark.parametrize(
+    ("kind", "median_mm", "p90_mm", "median_overlap"),
+    [("noisy", 0.9, 5.0, 0.96), ("one view", 1.5, 6.0, 0.45), ("clutter", 0.6, 3.0, 0.96)],
+)
+def test_all_shapes_are_recovered(
+    trials: dict[str, Array], kind: str, median_mm: float, p90_mm: float, median_overlap: float
+) -> None:
+    errors, overlaps = trials[kind].T
+    assert np.median(errors) < median_mm
+    assert np.percentile(errors, 90) < p90_mm
+    assert np.median(overlaps) > median_overlap
+
+
+def test_clutter_is_told_from_the_surface(rng: np.random.Generator) -> None:
+    surface = surface_points(superquadric((0.3, 1.0), (0.04, 0.04, 0.1)), 800, rng)
+    clutter = rng.uniform(-0.2, 0.2, (1200, 3))
+    probability = fit(np.vstack([surface, clutter])).probability
+    assert probability[:800].mean() > 0.9
+    assert probability[800:].mean() < 0.2
+
+
+def test_parameters_of_a_clean_can(rng: np.random.Generator) -> None:
+    can = superquadric((0.1, 1.0), (0.033, 0.033, 0.06), (0.1, -0.05, 0.8))
+    found = fit(surface_points(can, 2000, rng)).superquadric
+    np.testing.assert_allclose(sorted(found.semi_axes), [0.033, 0.033, 0.06], atol=0.002)
+    np.testing.assert_allclose(found.position, can.position, atol=0.001)
+    assert overlap(can, found, rng) > 0.97
+
+
+@pytest.mark.parametrize("noise", [1e-5, 3e-4])
+@pytest.mark.parametrize("preset", ["simulation", "real_world"])
+def test_a_sheet_becomes_a_thin_slab_behind_it(
+    noise: float, preset: str, rng: np.random.Generator
+) -> None:
+    sheet = rng.uniform(-1.0, 1.0, (3000, 3)) * [0.05, 0.03, 0.0] + [0.0, 0.0, 0.8]
+    sheet[:, 2] += noise * rng.normal(size=3000)
+    found = fit(sheet, PRESETS[preset]).superquadric  # type: ignore[index]
+    thin, short, long = sorted(found.full_extents)
+    assert thin < 0.01
+    assert short == pytest.approx(0.06, rel=0.35)
+    assert long == pytest.approx(0.1, rel=0.2)
+    assert found.position[2] > 0.8  # the sensor is at the origin
+
+
+def test_the_same_numbers_every_time(rng: np.random.Generator) -> None:
+    points = surface_points(random_superquadric(rng), 3000, rng)
+    first, again = fit(points), fit(points)
+    assert first.superquadric == again.superquadric
+    np.testing.assert_array_equal(first.probability, again.probability)
+
+
+def test_drawing_fewer_points_changes_little(rng: np.random.Generator) -> None:
+    body = superquadric((0.3, 0.9), (0.04, 0.06, 0.1))
+    points = surface_points(body, 6000, rng) + 0.001 * rng.normal(size=(6000, 3))
+    assert overlap(fit(points, fit_points=6000).superquadric,
+                   fit(points, fit_points=1000).superquadric, rng) > 0.95  # fmt: skip
+
+
+SHORTENED = {
+    "outlier_ratio": 0.2,
+    "max_iterations": 3,
+    "tolerance": 1e6,
+    "relative_tolerance": -1e9,
+    "max_switches": 0,
+    "adaptive_upper_bound": True,
+    "start_variance": 3.0,
+}
+
+
+@pytest.mark.parametrize("name", SHORTENED)
+def test_every_parameter_of_the_fit_does_something(name: str) -> None:
+    rng = np.random.default_rng(3)
+    body = superquadric((0.2, 1.6), (0.03, 0.05, 0.12), (0.0, 0.0, 0.8))
+    points = surface_points(body, 1500, rng, one_view=True)
+    points += 0.002 * rng.normal(size=points.shape)
+    changed = dataclasses.replace(SIMULATION, **{name: SHORTENED[name]})
+    assert fit(points, changed).superquadric != fit(points).superquadric
