@@ -87,11 +87,10 @@ affordTask(ID, handover) :-
       to 100 mm wide, for the two rings of scissors lie side by side.
     - It is a cylinder or a cuboid, as the thesis asks of a part to grasp
       (Code A.2); knife scales and scissor rings are flat.
-    - The blade is only known by its elongation, as in Code 6.1: 8 times as long
-      as thick, so that 70 mm of a blade still passes when it is recovered 8 mm
-      thick (steel of 2 mm and the noise of a depth camera). Pans, bottles and
-      heads of hammers are far from it; long thin handles pass as well, which the
-      structure of Code 6.1 cannot prevent.
+    - The blade is only known by its elongation, as in Code 6.1: 12 times as long
+      as thick, so that a 90 mm blade passes up to 7.5 mm of recovered thickness.
+      Pans, bottles and heads of hammers are far from it; a long thin handle
+      passes as well, which the structure of Code 6.1 cannot prevent.
 */
 
 affordTask(ID, cutting) :-
@@ -104,5 +103,5 @@ affordTask(ID, cutting) :-
     ),
 
     primitive_values(ID_tool, _, Dim_tool, _, _),
-    min_ratio(Dim_tool, 8),
+    min_ratio(Dim_tool, 12),
     ID \= ID_tool.

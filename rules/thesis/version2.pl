@@ -67,17 +67,14 @@ partAffordance(ID, scoop) :-
       the rest), 10 to 60 mm wide, 50 to 400 mm long: from the blade of small
       scissors to a chef's knife. A turner's blade is wider, a spoon's handle
       narrower.
-    - Eight times as long as thick, as in Version 1; together with the thickness
-      this leaves out hammer handles and bottles.
-    - A cuboid or a cylinder: a blade with a rounded outline is recovered as a
-      flat elliptic cylinder.
+    - Ten times as long as thick; together with the thickness this leaves out
+      hammer handles and bottles.
+    - A cuboid.
 */
 
 partAffordance(ID, cut) :-
     primitive_values(ID, _, Dim, _, Semantic_shape),
     min_dimension(Dim, [0.0, 0.01, 0.05]),
     max_dimension(Dim, [0.01, 0.06, 0.40]),
-    min_ratio(Dim, 8),
-    (   Semantic_shape == cuboid
-    ;   Semantic_shape == cylinder
-    ).
+    min_ratio(Dim, 10),
+    Semantic_shape == cuboid.

@@ -9,7 +9,7 @@ import orjson
 from pydantic import Field
 
 from shared.errors import MalformedRequest
-from shared.schemas.fields import Vector3
+from shared.schemas.fields import TaskText, Vector3
 from shared.schemas.scene import InputKind, View
 from shared.schemas.task import Version
 from shared.wire import Message
@@ -23,7 +23,7 @@ _JSON_VALUES = ("viewpoint", "target", "intrinsics", "depth_scale")
 class GraspParameters(Message):
     """The contract's parameters of POST /grasp, each default written once."""
 
-    task: Annotated[str, Field(min_length=1, max_length=64)]
+    task: TaskText
     reasoning: Version = "v2"
     input: InputKind = "scene"
     viewpoint: Vector3 = (0.0, 0.0, 0.0)

@@ -64,9 +64,6 @@ class Reasoner:
     def decide(self, request: DecideRequest) -> DecideResponse:
         """Find the part to hold for a task.
 
-        The task's name may have spaces around it and any letter case; names are
-        lower snake case, so no two can be mixed up.
-
         Raises
         ------
         UnknownTask
@@ -77,20 +74,19 @@ class Reasoner:
             Prolog came to no end.
         """
         engine, knowledge = self._warm()
-        task = request.task.strip().lower()
         decision = engine.ask(
             "decide",
             timeout_s=self._settings.max_wait_s,
             knowledge=knowledge.name,
             rule_set=request.rule_set,
             version=request.reasoning,
-            task=task,
+            task=request.task,
             max_inferences=self._settings.max_inferences,
             parts=facts_of(request.primitives, self._settings.max_primitives),
         )
         if decision["outcome"] == "unknown_task":
-            raise knowledge.unknown(task, request.reasoning, request.rule_set)
-        return _response(request, task, decision)
+            raise knowledge.unknown(request.task, request.reasoning, request.rule_set)
+        return _response(request, decision)
 
     def list_tasks(self, _: Nothing) -> TaskList:
         """Return every task that is known."""
@@ -120,9 +116,9 @@ class Reasoner:
             return self._ready
 
 
-def _response(request: DecideRequest, task: str, decision: JsonObject) -> DecideResponse:
+def _response(request: DecideRequest, decision: JsonObject) -> DecideResponse:
     found = decision["outcome"] == "found"
-    reason = None if found else reason_for(task, decision)
+    reason = None if found else reason_for(request.task, decision)
     regions = [
         Region(
             primitive_ids=region["parts"],
@@ -137,19 +133,19 @@ def _response(request: DecideRequest, task: str, decision: JsonObject) -> Decide
         region=regions[0] if found else None,
         alternatives=tuple(regions[1:]),
         labels={label["part"]: tuple(label["affordances"]) for label in decision["labels"]},
-        explanation=_explanation(request, task, decision, reason) if request.explain else None,
+        explanation=_explanation(request, decision, reason) if request.explain else None,
     )
 
 
 def _explanation(
-    request: DecideRequest, task: str, decision: JsonObject, reason: Reason | None
+    request: DecideRequest, decision: JsonObject, reason: Reason | None
 ) -> Explanation:
     parts = {primitive.id: primitive for primitive in request.primitives}
     miss = decision["miss"]
     if reason is None:
-        text = explain_found(task, decision, parts)
+        text = explain_found(request.task, decision, parts)
     else:
-        text = explain_miss(task, reason.message, miss, parts, decision["lacking"])
+        text = explain_miss(request.task, reason.message, miss, parts, decision["lacking"])
     return Explanation(
         text=text,
         facts=tuple(decision["facts"]),

@@ -7,7 +7,7 @@ from typing import Annotated
 import numpy as np
 from annotated_types import Len
 from numpy.typing import NDArray
-from pydantic import Field, FiniteFloat
+from pydantic import Field, FiniteFloat, StringConstraints
 
 from shared.wire import ArrayField
 
@@ -26,3 +26,7 @@ SuperquadricVector = Annotated[tuple[FiniteFloat, ...], Len(12, 12)]
 """[e1, e2, a1, a2, a3, tx, ty, tz, qx, qy, qz, qw]"""
 Name = Annotated[str, Field(pattern=r"^[a-z][a-z0-9_]{0,63}$")]
 """Of a task, an affordance, a gripper."""
+TaskText = Annotated[
+    str, StringConstraints(strip_whitespace=True, to_lower=True, min_length=1, max_length=64)
+]
+"""A task as people type it; case and surrounding spaces do not matter."""

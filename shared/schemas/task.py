@@ -6,7 +6,7 @@ from typing import Annotated, Literal
 
 from pydantic import Field
 
-from shared.schemas.fields import Name
+from shared.schemas.fields import Name, TaskText
 from shared.schemas.primitive import Primitive
 from shared.schemas.route import Nothing, Route
 from shared.wire import Message
@@ -72,7 +72,7 @@ class Explanation(Message):
 class DecideRequest(Message):
     """Asks what this object offers for this task."""
 
-    task: Annotated[str, Field(min_length=1, max_length=64)]
+    task: TaskText
     reasoning: Version = "v2"
     rule_set: RuleSet = "thesis"
     primitives: tuple[Primitive, ...]
