@@ -54,6 +54,7 @@ def export(model: Pipeline, path: Path) -> None:
     """Write the network as ONNX: `parameters` (N, 5) in, `probabilities` (N, 3) out."""
     network = to_onnx(
         model,
+        name="shape_classifier",
         initial_types=[("features", FloatTensorType([None, 5]))],
         options={"zipmap": False},
         target_opset={"": 17, "ai.onnx.ml": 3},

@@ -52,9 +52,6 @@ class Arm:
             link: bullet.getJointInfo(self.body, link)[12].decode()
             for link in range(bullet.getNumJoints(self.body))
         }
-        # PyBullet's Jacobian counts from a link's centre of mass.
-        centre_of_mass = np.array(bullet.getDynamicsInfo(self.body, HAND)[3])
-        self._jacobian_point = (HAND_FROM_GRASP[:3, 3] - centre_of_mass).tolist()
         self._couple_fingers()
 
     def _couple_fingers(self) -> None:
@@ -124,7 +121,7 @@ class Arm:
         positions = [*map(float, joints), 0.0, 0.0]
         zeros = [0.0] * len(positions)
         linear, angular = self._bullet.calculateJacobian(
-            self.body, HAND, self._jacobian_point, positions, zeros, zeros
+            self.body, HAND, HAND_FROM_GRASP[:3, 3].tolist(), positions, zeros, zeros
         )
         return np.vstack([linear, angular])[:, :7]
 

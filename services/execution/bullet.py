@@ -14,13 +14,19 @@ TIME_STEP = 1 / 240
 
 
 class Bullet:
-    """The functions of `pybullet`, bound to one physics client."""
+    """The functions of `pybullet`, bound to one physics client.
+
+    Attributes
+    ----------
+    client : int
+        PyBullet's number for it.
+    """
 
     def __init__(self, client: int) -> None:
-        self._client = client
+        self.client = client
 
     def __getattr__(self, name: str) -> Any:
-        return partial(getattr(pybullet, name), physicsClientId=self._client)
+        return partial(getattr(pybullet, name), physicsClientId=self.client)
 
 
 @contextmanager

@@ -2,8 +2,7 @@
 
 Approximate convex decomposition (Lien and Amato 2007): a piece whose surface lies
 too deep below its hull is cut by a plane, until none does. PyBullet offers V-HACD
-for this; on scanned household objects it left twice to five times the void, with
-no parameter that changed it (docs/decisions/0006-execution.md).
+for this; it fills more of what is hollow (docs/decisions/0006-execution.md).
 """
 
 from __future__ import annotations
@@ -15,13 +14,13 @@ import numpy as np
 from numpy.typing import NDArray
 
 from services.execution.convex import ConvexPart, convex_hull
-from services.execution.pieces import Piece
+from services.execution.pieces import Piece, refined
 from shared.errors import DegenerateCloud
 from shared.superquadric import Superquadric, surface_mesh
 
 Array = NDArray[np.float64]
 
-TOLERANCE = 0.0015
+TOLERANCE = 0.002
 """Metres that a surface may lie below its part's hull."""
 MAX_PARTS = 24
 
@@ -67,10 +66,12 @@ def parts_of_mesh(vertices: Array, faces: NDArray[np.int32]) -> list[ConvexPart]
 @lru_cache(maxsize=8)
 def _decompose(triangles: bytes) -> tuple[ConvexPart, ...]:
     """Cut the worst piece until all are convex enough; remembered for the next grasp."""
-    pieces = [Piece(np.frombuffer(triangles).reshape(-1, 3, 3))]
-    if pieces[0].hull is None:
+    surface = np.frombuffer(triangles).reshape(-1, 3, 3)
+    whole = Piece(refined(surface, float(np.ptp(surface, axis=(0, 1)).max()) / 20))
+    if whole.hull is None:
         raise _flat()
-    while len(pieces) < MAX_PARTS:
+    pieces = [whole]
+    for _ in range(MAX_PARTS - 1):
         hollow = [piece for piece in pieces if piece.concavity > TOLERANCE]
         if not hollow:
             break

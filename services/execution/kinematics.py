@@ -48,9 +48,9 @@ def solve(arm: Arm, base_from_goal: Array, start: Array) -> Array | None:
     """Return joints (7,) within their limits that reach a pose, or None.
 
     Damped least squares (Wampler 1986) with a pull towards `HOME` in the null
-    space; a step that leaves the limits is clipped. PyBullet's own solver found
-    5 % of random reachable poses with its null-space option, so only its
-    Jacobian and its forward kinematics are used.
+    space; a step that leaves the limits is clipped. PyBullet's own solver, with
+    its null-space option, misses most reachable poses (docs/decisions/0006-execution.md);
+    only its Jacobian and its forward kinematics are used.
 
     Parameters
     ----------

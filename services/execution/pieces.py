@@ -51,7 +51,7 @@ class Piece:
     @cached_property
     def depths(self) -> Array:
         """How far each surface sample lies below the hull, along its normal, metres (S,)."""
-        if self.hull is None:
+        if self.hull is None or self.area == 0:
             return np.zeros(1)
         return _depths(self.hull, *self._samples)
 
@@ -67,7 +67,8 @@ class Piece:
 
     def divided(self) -> list[Piece]:
         """Return the two pieces of the best of a few cuts across the principal axes."""
-        assert self.hull is not None, "a flat piece is never divided"
+        if self.hull is None:
+            return []
         corners = self.triangles.reshape(-1, 3)
         corners = corners[:: 1 + len(corners) // CORNERS]
         vertices = self.hull.vertices
@@ -95,6 +96,26 @@ class Piece:
             if here.any():
                 total += float(_depths(hull, centres[here], normals[here]).sum())
         return total
+
+
+def refined(triangles: Array, longest: float, most: int = 20_000) -> Array:
+    """Return the same surface in triangles (U, 3, 3) with no edge over `longest` metres.
+
+    Long triangles are quartered at the middles of their edges, as long as there
+    are no more than `most`.
+    """
+    while len(triangles) <= most:
+        edges = np.roll(triangles, -1, axis=1) - triangles
+        long = np.linalg.norm(edges, axis=2).max(axis=1) > longest
+        if not long.any():
+            break
+        a, b, c = np.moveaxis(triangles[long], 1, 0)
+        ab, bc, ca = (a + b) / 2, (b + c) / 2, (c + a) / 2
+        quarters = [(a, ab, ca), (ab, b, bc), (ca, bc, c), (ab, bc, ca)]
+        triangles = np.concatenate(
+            [triangles[~long], *(np.stack(corners, axis=1) for corners in quarters)]
+        )
+    return triangles
 
 
 def clip(triangles: Array, normal: Array, offset: float) -> Array:

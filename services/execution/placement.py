@@ -65,6 +65,11 @@ class Obstruction:
     table: tuple[str, float] | None = None
     object: tuple[str, float] | None = None
 
+    @property
+    def reached(self) -> int:
+        """How many placements reach the whole motion, were it free."""
+        return self.tried - sum(self.out_of_reach.values())
+
     def note_unreached(self, what: str) -> None:
         """Count a placement from which `what` is out of reach."""
         self.out_of_reach[what] = self.out_of_reach.get(what, 0) + 1

@@ -45,6 +45,7 @@ class World:
         self.table = self._fixed_box(TABLE_HALF, (0.0, 0.0, -TABLE_HALF[2]))
         self.object = self._add_object(body)
         self.supports = [self.table]
+        self.rest = body.world_from_body
         self._prop: int | None = None
         self._support_where_seen()
 

@@ -3,12 +3,14 @@
 from __future__ import annotations
 
 from dataclasses import dataclass, replace
+from typing import NamedTuple
 
 import numpy as np
 from numpy.typing import NDArray
 
 from services.grasp_proposal.boxes import chunks, finger_hits, local_coordinates, palm_hits
 from services.grasp_proposal.hand import Hand
+from services.grasp_proposal.ragged import padded_columns
 from services.grasp_proposal.search import Placements
 from services.grasp_proposal.workspace import Workspace
 from shared.geometry.rotation import unit
@@ -18,7 +20,9 @@ Mask = NDArray[np.bool_]
 
 _EDGE = 0.003
 _CONTINUES = 0.006
+_CORNER = 0.004
 _STRIPS = 4
+_SLOPE = 0.75
 _MAX_HIDDEN = 0.4
 _LEAST_POINTS = 3
 
@@ -37,6 +41,9 @@ class Contacts:
         How much of `width` is a guess about the side that was not seen.
     alignment : (G,) array
         Cosine between the closing direction and the worse contact normal.
+    sloped : (G,) bool array
+        The pads would close on a slope or a corner that goes on beyond them,
+        outside the friction cone: they would squeeze the part away.
     coverage : (G,) array
         Share of the pads' width that has surface at its edge, on the worse side.
     twist : (G,) array
@@ -54,6 +61,7 @@ class Contacts:
     opening: Array
     hidden: Array
     alignment: Array
+    sloped: Mask
     coverage: Array
     twist: Array
     engagement: Array
@@ -81,38 +89,46 @@ def find_contacts(workspace: Workspace, hand: Hand, placed: Placements) -> Conta
     return Contacts(placed=replace(placed, **edges), **joined)
 
 
+class _Side(NamedTuple):
+    """Contact with one pad, each (G,): as in `Contacts`, and the mean x of its points."""
+
+    alignment: Array
+    sloped: Mask
+    coverage: Array
+    x: Array
+
+
 @dataclass(frozen=True)
 class _Slab:
-    """The surface within a finger's width of each of G hands; rows are padded with NaN.
+    """The surface about a finger's width before each of G hands; rows are padded with NaN.
 
     Attributes
     ----------
     local : (G, 3, n) array
         Coordinates from the placement's origin, along its axes.
-    points, normals : (G, n, 3) arrays
+    points, normals : (G, n, 3) float32 arrays
         The same points in the workspace.
     in_focus : (G, n) bool array
     """
 
     local: NDArray[np.float32]
-    points: Array
-    normals: Array
+    points: NDArray[np.float32]
+    normals: NDArray[np.float32]
     in_focus: Mask
 
 
 def _slab(workspace: Workspace, hand: Hand, placed: Placements) -> _Slab:
     local = local_coordinates(placed, workspace.points)
-    inside = np.abs(local[:, 0]) < hand.finger_width / 2 + 0.001
-    rows, columns = np.nonzero(inside)
-    counts = inside.sum(axis=1)
-    place = np.arange(len(rows)) - np.repeat(np.cumsum(counts) - counts, counts)
-    index = np.zeros((len(placed), max(1, int(counts.max(initial=0)))), dtype=np.intp)
-    index[rows, place] = columns
-    filled = np.arange(index.shape[1]) < counts[:, None]
+    inside = np.abs(local[:, 0]) < hand.finger_width / 2 + _CONTINUES
+    inside &= local[:, 2] < (placed.tip + _CONTINUES)[:, None]
+    index, filled = padded_columns(inside)
     gathered = np.take_along_axis(local, index[:, None], axis=2)
     gathered[np.broadcast_to(~filled[:, None], gathered.shape)] = np.nan
     return _Slab(
-        gathered, workspace.points[index], workspace.normals[index], workspace.in_focus[index]
+        gathered,
+        workspace.points.astype(np.float32)[index],
+        workspace.normals.astype(np.float32)[index],
+        workspace.in_focus[index],
     )
 
 
@@ -124,10 +140,8 @@ def _contacts(workspace: Workspace, hand: Hand, placed: Placements) -> Contacts:
     count = held.sum(axis=1)
     left, right = _span(y, held)
     front, _ = _span(z, held)
-    sides = [
-        _side(workspace, placed, hand, slab, held, -1, left),
-        _side(workspace, placed, hand, slab, held, +1, right),
-    ]
+    left_side = _side(workspace, placed, hand, slab, held, -1, left)
+    right_side = _side(workspace, placed, hand, slab, held, +1, right)
     left_hidden, right_hidden = _hidden_flanks(workspace, placed, right - left, hand)
     exact = replace(placed, left=left - left_hidden, right=right + right_hidden, front=front)
     width = exact.right - exact.left
@@ -137,9 +151,10 @@ def _contacts(workspace: Workspace, hand: Hand, placed: Placements) -> Contacts:
         width=width,
         opening=opening,
         hidden=left_hidden + right_hidden,
-        alignment=np.minimum(sides[0][0], sides[1][0]),
-        coverage=np.minimum(sides[0][1], sides[1][1]),
-        twist=np.abs(sides[0][2] - sides[1][2]),
+        alignment=np.minimum(left_side.alignment, right_side.alignment),
+        sloped=left_side.sloped | right_side.sloped,
+        coverage=np.minimum(left_side.coverage, right_side.coverage),
+        twist=np.abs(left_side.x - right_side.x),
         engagement=placed.tip - front,
         in_focus=(held & slab.in_focus).sum(axis=1) / np.maximum(count, 1),
         finger_hit=finger_hits(exact, hand, opening, slab.local),
@@ -156,8 +171,8 @@ def _side(
     held: Mask,
     sign: int,
     edge: Array,
-) -> tuple[Array, Array, Array]:
-    """Return alignment, coverage and mean x of the contact on one side (-1 left, +1 right).
+) -> _Side:
+    """Return the contact on one side (-1 left, +1 right).
 
     The contact normal is that of the visible surface at the edge. Where the
     surface ends there as the sensor saw it, the pad touches what lies behind the
@@ -167,26 +182,34 @@ def _side(
     x, z = slab.local[:, 0], slab.local[:, 2]
     outwards = sign * (slab.local[:, 1] - edge[:, None].astype(np.float32))
     contact = held & (outwards > -_EDGE)
-    weight = contact / np.maximum(contact.sum(axis=1), 1)[:, None]
+    weight = (contact / np.maximum(contact.sum(axis=1), 1)[:, None]).astype(np.float32)
     closing = placed.rotation[:, :, 1]
     normal = unit(np.einsum("gn,gni->gi", weight, slab.normals))
     alignment = sign * np.einsum("gi,gi->g", normal, closing)
+    in_width = np.abs(x) < hand.finger_width / 2
+    beyond = in_width & (outwards > 0) & (outwards < _CONTINUES)
+    beyond &= z < (placed.tip + _CONTINUES)[:, None]
+    goes_on = beyond.any(axis=1)
     if workspace.viewpoint is not None:
-        beyond = (outwards > 0) & (outwards < _CONTINUES)
-        beyond &= z < (placed.tip + _CONTINUES)[:, None]
         centre = np.einsum("gn,gni->gi", weight, slab.points)
         contour = unit(
             np.cross(_outline(slab.points, weight, centre), centre - workspace.viewpoint)
         )
         facing = np.abs(np.einsum("gi,gi->g", contour, closing))
-        alignment = np.where(beyond.any(axis=1), alignment, np.maximum(alignment, facing))
+        alignment = np.where(goes_on, alignment, np.maximum(alignment, facing))
     strip = np.floor((x / hand.finger_width + 0.5) * _STRIPS)
     filled = [(contact & (strip == s)).any(axis=1) for s in range(_STRIPS)]
     mean_x = (np.where(contact, x, 0.0) * weight).sum(axis=1)
-    return alignment, np.mean(filled, axis=0), mean_x
+    coverage = np.mean(filled, axis=0)
+    widens = (np.abs(x) > hand.finger_width / 2) & (outwards > _CORNER) & (z < placed.tip[:, None])
+    corner = (widens & (outwards < 3 * _CORNER)).any(axis=1) & (coverage * _STRIPS <= 1)
+    sloped = (goes_on & (alignment < _SLOPE)) | corner
+    return _Side(alignment, sloped, coverage, mean_x)
 
 
-def _outline(points: Array, weight: Array, centre: Array) -> Array:
+def _outline(
+    points: NDArray[np.float32], weight: NDArray[np.float32], centre: NDArray[np.float32]
+) -> Array:
     """Return the main direction (G, 3) of the weighted points (G, n, 3)."""
     centred = (points - centre[:, None]) * np.sqrt(weight)[:, :, None]
     _, vectors = np.linalg.eigh(np.matmul(centred.transpose(0, 2, 1), centred))

@@ -76,7 +76,7 @@ class GraspProposer:
             "collision_object": contacts.finger_hit | contacts.palm_hit,
             "collision_support": (tips < _TOUCHES * hand.support_clearance)
             | (palm < hand.palm_clearance),
-            "not_antipodal": contacts.alignment < _LEAST_ALIGNMENT,
+            "not_antipodal": contacts.sloped | (contacts.alignment < _LEAST_ALIGNMENT),
         }
         good = np.ones(len(placed), dtype=np.bool_)
         for reason, failed in failures.items():

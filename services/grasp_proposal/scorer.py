@@ -16,7 +16,7 @@ from shared.geometry.rotation import unit
 Array = NDArray[np.float64]
 
 _GOOD_ENGAGEMENT = 0.020
-_LEVER = 0.10
+_LEVER = 0.08
 _HIDDEN_THICKNESS = 0.015
 _FRICTION = 0.6
 _GRIP = 20.0
@@ -46,7 +46,7 @@ def factors(
     placed = contacts.placed
     return {
         "antipodal": _ramp(contacts.alignment, 0.35, 0.95),
-        "coverage": 0.25 + 0.75 * contacts.coverage,
+        "coverage": 0.1 + 0.9 * contacts.coverage,
         "opposed": 1 - 0.5 * np.clip(contacts.twist / (hand.finger_width / 2), 0, 1),
         "engaged": _ramp(contacts.engagement, -0.006, _GOOD_ENGAGEMENT),
         "seen": 1 - 0.6 * contacts.hidden / np.maximum(contacts.width, 1e-4),

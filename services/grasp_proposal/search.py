@@ -14,10 +14,10 @@ from dataclasses import dataclass
 
 import numpy as np
 from numpy.typing import NDArray
-from scipy.spatial import cKDTree
 
 from services.grasp_proposal.hand import Hand
 from services.grasp_proposal.orientations import Hands
+from services.grasp_proposal.ragged import padded_columns
 from services.grasp_proposal.workspace import Workspace
 
 Array = NDArray[np.float64]
@@ -29,7 +29,7 @@ _TIP_MARGIN = 0.001
 _DEPTHS = np.array([0.005, 0.010, 0.016, 0.023, 0.031, 0.041])
 _LEAST_DEPTH = 0.0005
 _GOOD_ENGAGEMENT = 0.022
-_CHUNK_POINTS = 60_000
+_CHUNK = 250_000
 
 
 @dataclass(frozen=True)
@@ -87,19 +87,17 @@ def search(
         Every hand pose (orientation and depth) that is left out is counted here.
     """
     reach = hand.max_opening + hand.finger_thickness + 3 * hand.clearance
-    tree = cKDTree(workspace.coarse)
-    radius = float(np.hypot(reach, hand.finger_length))
-    near = [list(group) for group in np.atleast_1d(tree.query_ball_point(points, radius))]
-    longest = max(map(len, near))
-    padded = np.vstack([workspace.coarse, np.full(3, 1e6)]).astype(np.float32)
-    chunk = max(1, _CHUNK_POINTS // max(1, longest * hands.rotations.shape[1] // 8))
+    radius = np.hypot(reach, hand.finger_length)
+    surface = workspace.coarse.astype(np.float32)
+    padded = np.vstack([surface, np.full(3, 1e6, dtype=np.float32)])
+    chunk = max(1, _CHUNK // (len(surface) * hands.rotations.shape[1]))
     found = []
     for start in range(0, len(points), chunk):
         rows = slice(start, start + chunk)
-        index = np.full((len(points[rows]), longest), len(workspace.coarse))
-        for row, group in enumerate(near[rows]):
-            index[row, : len(group)] = group
-        around = padded[index] - points[rows, None].astype(np.float32)
+        centres = points[rows, None].astype(np.float32)
+        near = ((surface - centres) ** 2).sum(axis=2) < radius**2
+        index, _ = padded_columns(near, filler=len(surface))
+        around = padded[index] - centres
         profile, half = _profiles(around, hands.rotations[rows], hand, reach)
         possible = hands.possible[rows].ravel()
         rotation = hands.rotations[rows].reshape(-1, 3, 3)[possible]
@@ -141,16 +139,17 @@ def _place(
 ) -> Placements:
     tip, tried = _depths(workspace, hand, rotation, origin)
     rejected["collision_support"] += int((~tried.any(axis=1)).sum())
-    occupied = profile[:, None, :] < (tip + _TIP_MARGIN)[:, :, None]
+    nearest = np.ascontiguousarray(profile.T)[:, :, None]  # bins first: scanned one by one
+    occupied = nearest < (tip + _TIP_MARGIN).astype(np.float32)
     need = int(np.ceil((hand.finger_thickness + hand.clearance) / _BIN)) + 1
-    right = _first_gap(occupied[:, :, half:], need)
-    left = _first_gap(occupied[:, :, half::-1], need)
+    right = _first_gap(occupied[half:], need)
+    left = _first_gap(occupied[half::-1], need)
     enclosed = (right >= 0) & (left >= 0)
     width = (right + left + 1) * _BIN
     fits = enclosed & (width <= hand.max_width)
-    steps = np.arange(profile.shape[1]) - half
-    between = (steps >= -left[:, :, None]) & (steps <= right[:, :, None])
-    front = np.where(between, profile[:, None, :], np.inf).min(axis=2)
+    steps = (np.arange(len(nearest), dtype=np.int32) - half)[:, None, None]
+    between = (steps >= -left) & (steps <= right)
+    front = np.where(between, nearest, np.float32(np.inf)).min(axis=0)
     clear = front > tip - hand.finger_length + hand.palm_clearance
     rejected["too_wide"] += int((tried & ~fits).sum())
     rejected["collision_object"] += int((tried & fits & ~clear).sum())
@@ -191,15 +190,16 @@ def _depths(workspace: Workspace, hand: Hand, rotation: Array, origin: Array) ->
     return np.maximum(limited, 0.0), tried
 
 
-def _first_gap(occupied: Mask, need: int) -> NDArray[np.int64]:
+def _first_gap(occupied: Mask, need: int) -> NDArray[np.int32]:
     """Return the last occupied bin before the first run of `need` free ones, else -1.
 
-    `occupied` is (H, D, n), counted outwards from the sample's own bin.
+    `occupied` is (n, H, D), counted outwards from the sample's own bin.
     """
-    free = np.zeros(occupied.shape[:2], dtype=np.int64)
-    last = np.full(occupied.shape[:2], -1, dtype=np.int64)
-    for step in range(occupied.shape[2]):
-        free = np.where(occupied[:, :, step], 0, free + 1)
+    free = np.zeros(occupied.shape[1:], dtype=np.int32)
+    last = np.full(occupied.shape[1:], -1, dtype=np.int32)
+    for step, taken in enumerate(occupied):
+        free += 1
+        free[taken] = 0
         done = (free == need) & (last < 0)
         last[done] = max(step - need, 0)
     return last

@@ -25,6 +25,7 @@ _COARSE, _COARSE_COUNT = (0.003, 0.004, 0.005, 0.006), 1200
 _OBSTACLES = (0.004,)
 _MAX_POINTS = 20_000
 _HAND_REACH = 0.5
+_WHOLE = 200
 _STEEP = 0.98
 
 
@@ -101,6 +102,8 @@ def build_workspace(request: ProposeRequest) -> Workspace:
             offset += float(up @ outer_from_work[:3, 3])
         up = work_from_outer[:3, :3] @ up
     points = transform_points(work_from_outer, points)
+    order = np.lexsort((focus, *points.round(9).T))  # thinning and sampling move with the scene
+    points, focus = points[order], focus[order]
     fine = thin(points, _FINE, _FINE_COUNT)
     kept, kept_focus = points[fine], focus[fine]
     if not kept_focus.any():  # the focus is smaller than a voxel
@@ -136,7 +139,7 @@ def thin(points: Array, voxels: tuple[float, ...], enough: int) -> NDArray[np.in
     else the last, doubled until 20,000 suffice. Clouds of up to 200 points stay whole.
     """
     first = np.arange(len(points))
-    if len(points) <= 200:
+    if len(points) <= _WHOLE:
         return first
     low = points.min(axis=0)
     finest = float(np.ptp(points, axis=0).max()) / 1e6
@@ -145,7 +148,10 @@ def thin(points: Array, voxels: tuple[float, ...], enough: int) -> NDArray[np.in
         cells = np.floor((points[first] - low) / max(voxel, finest)).astype(np.int64)
         span = cells.max(axis=0) + 1
         key = (cells[:, 0] * span[1] + cells[:, 1]) * span[2] + cells[:, 2]
-        first = first[np.sort(np.unique(key, return_index=True)[1])]
+        kept = np.sort(np.unique(key, return_index=True)[1])
+        if len(kept) < MIN_POINTS:  # all in a few voxels: still give neighbours to everyone
+            return first[np.linspace(0, len(first) - 1, _WHOLE).astype(np.intp)]
+        first = first[kept]
         if len(first) <= (enough if step < len(voxels) - 1 else _MAX_POINTS):
             break
     return first

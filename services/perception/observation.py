@@ -87,7 +87,7 @@ def observe(view: View, kind: InputKind, min_points: int, max_points: int) -> Ob
     everything, viewpoint = _points_and_viewpoint(view)
     require_metres(everything, kind, field)
     rows = np.flatnonzero(_all_columns(np.abs(everything) < MAX_COORDINATE_M))
-    points = everything[rows]
+    points = everything.take(rows, axis=0)
     if len(rows) < min_points:
         raise EmptyCloud(
             f"{len(rows)} valid points of {len(everything)}, at least {min_points} are needed; "
@@ -97,12 +97,12 @@ def observe(view: View, kind: InputKind, min_points: int, max_points: int) -> Ob
             allowed=min_points,
             input_points=len(everything),
         )
-    rays = points - viewpoint
+    rays = points - viewpoint if viewpoint.any() else points
     ranges = np.sqrt(np.einsum("ij,ij->i", rays, rays))
     if view.depth is not None:
         gaze = _image_centre(view)
     else:
-        gaze = unit((1.0 / np.maximum(ranges, 1e-9)) @ rays)
+        gaze = unit(np.einsum("i,ij->j", 1.0 / np.maximum(ranges, 1e-9), rays))
     return Observation(points, rows, ranges, viewpoint, gaze, len(everything))
 
 

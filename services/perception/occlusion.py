@@ -19,6 +19,7 @@ Array = NDArray[np.float64]
 
 _ALWAYS = 2.0
 _MINOR = 0.1
+_AROUND = 8
 _STEPS = np.linspace(0.0, 1.0, 9)[1:-1, None]
 
 
@@ -84,7 +85,8 @@ def _hidden_bridge(a: Array, b: Array, view: Observation, reach: float, voxel: f
     depths = np.linalg.norm(samples, axis=2)
     cloud = np.concatenate([a, b]) - view.viewpoint
     ranges = np.linalg.norm(cloud, axis=1)
-    chord, which = cKDTree(unit(cloud)).query(unit(samples))
-    before = ranges[np.asarray(which, dtype=np.intp)] < depths + 2 * voxel
-    unseen = (chord * depths < 1.5 * voxel) & before
+    chord, which = cKDTree(unit(cloud)).query(unit(samples), k=min(_AROUND, len(cloud)))
+    aside = chord * depths[..., None] < 1.5 * voxel
+    before = ranges[np.asarray(which, dtype=np.intp)] < depths[..., None] + 2 * voxel
+    unseen = (aside & before).any(axis=2)
     return bool(unseen.all(axis=1).any())

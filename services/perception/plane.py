@@ -18,7 +18,8 @@ SAMPLE = 20_000
 """Points that speak for a view where not all are needed."""
 MAP_VOXEL_M = 0.015
 """Edge of the voxels of the thinned cloud in which planes are searched."""
-_MIN_SHARE = 0.05
+MIN_SHARE = 0.05
+"""Of a view; a plane with less of it is no candidate for the support."""
 _MIN_WIDTH_M = 0.06
 _PATCH_GAP_M = 0.1
 _COMPASS = np.stack([f(np.arange(32) * np.pi / 16) for f in (np.cos, np.sin)])
@@ -37,7 +38,7 @@ class Plane:
     offset : float
         Metres.
     basis : (3, 2) array
-        Orthonormal directions in the plane.
+        Orthonormal directions in the plane: the principal axes of the seen piece.
     outline : (32,) array
         How far the seen piece extends in 32 evenly spread directions of the plane,
         measured from the frame's origin: half-planes that enclose it.
@@ -48,7 +49,7 @@ class Plane:
     area : float
         Square metres seen.
     width, length : float
-        Sides of the seen piece along its principal axes, metres.
+        Sides of `box`.
     """
 
     normal: Array
@@ -77,7 +78,7 @@ def measure_plane(normal: Array, offset: float, mapped: Array, share: float) -> 
     Patches of less than a tenth of them are left out: where a wall crosses the level of a
     table. None when the rest is too small to stand on, or `share` of the view is.
     """
-    if share < _MIN_SHARE:
+    if share < MIN_SHARE:
         return None
     patches = cluster(mapped, _PATCH_GAP_M, 1)
     sizes = np.bincount(patches[patches >= 0])
@@ -85,9 +86,9 @@ def measure_plane(normal: Array, offset: float, mapped: Array, share: float) -> 
     if len(mapped) < 3:
         return None
     basis = plane_basis(normal)
+    basis = basis @ np.linalg.eigh(np.cov((mapped @ basis).T))[1]
     uv = mapped @ basis
-    axes = np.linalg.eigh(np.cov(uv.T))[1]
-    width, length = np.sort(np.ptp(uv @ axes, axis=0)).tolist()
+    width, length = np.sort(np.ptp(uv, axis=0)).tolist()
     if width < _MIN_WIDTH_M:
         return None
     area = len(uv) * MAP_VOXEL_M**2
@@ -110,22 +111,28 @@ def refine(plane: Plane, points: Array, settings: PerceptionSettings) -> Plane:
         return plane
     origin = few.mean(axis=0)
     normal, offset = plane.normal, plane.offset + float(plane.normal @ origin)
-    few, everything = few - origin, points - origin
-    for cloud in (few, few, few, everything):
-        sample = height_above(cloud[:: max(1, len(cloud) // SAMPLE)], normal, offset)
-        spread = np.median(np.abs(sample[np.abs(sample) < reach])) if len(sample) else 0.0
+    for cloud in (few, few, few, points):
+        xyz = np.ascontiguousarray(cloud.T) - origin[:, None]
+        heights = np.einsum("a,ai->i", normal, xyz) + offset
+        sample = np.abs(heights[:: max(1, len(heights) // SAMPLE)])
+        spread = np.median(sample[sample < reach]) if (sample < reach).any() else 0.0
         scale = _TUKEY * max(SIGMA_PER_MEDIAN * float(spread), 2e-4)
-        weights = height_above(cloud, normal, offset)
-        weights *= weights * (-1.0 / scale**2)
-        weights += 1.0
-        np.maximum(weights, 0.0, out=weights)
-        weights *= weights
+        weights = np.clip(1.0 - (heights / scale) ** 2, 0.0, None) ** 2
         total = float(weights.sum())
         if total < 3.0:
             return plane
-        mean = weights @ cloud / total
-        scatter = (cloud * weights[:, None]).T @ cloud / total - np.outer(mean, mean)
+        mean, scatter = _moments(xyz, weights / total)
         turned = np.linalg.eigh(scatter)[1][:, 0]
         normal = turned if turned @ normal > 0 else -turned
         offset = -float(normal @ mean)
     return replace(plane, normal=normal, offset=offset - float(normal @ origin))
+
+
+def _moments(xyz: Array, weights: Array) -> tuple[Array, Array]:
+    """Return mean (3,) and scatter (3, 3) of points (3, N) whose weights (N,) add up to 1.
+
+    Not by BLAS, which adds in an order that depends on the number of its threads.
+    """
+    weighted = xyz * weights
+    mean = weighted.sum(axis=1)
+    return mean, np.einsum("ai,bi->ab", weighted, xyz) - np.outer(mean, mean)

@@ -10,7 +10,7 @@ from scipy.spatial import cKDTree
 
 from services.perception.cloud import thin
 from services.perception.observation import Observation
-from services.perception.plane import MAP_VOXEL_M, SAMPLE, Plane, measure_plane
+from services.perception.plane import MAP_VOXEL_M, MIN_SHARE, SAMPLE, Plane, measure_plane
 from services.perception.settings import PerceptionSettings
 from shared.geometry.plane import fit_plane, height_above
 
@@ -37,7 +37,7 @@ def find_planes(
     total = len(sample)
     remaining = thin(sample, MAP_VOXEL_M)
     for _ in range(settings.max_planes):
-        if len(remaining) < 10:
+        if len(remaining) < 10 or len(sample) < MIN_SHARE * total:
             return
         found = _ransac(remaining, settings, rng)
         if found is None:

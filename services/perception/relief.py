@@ -17,6 +17,7 @@ Mask = NDArray[np.bool_]
 
 _MARGIN_M = 0.05
 _MAX_CELLS = 1_000_000
+_EVERY = 5
 _EIGHT = np.ones((3, 3), dtype=bool)
 
 
@@ -36,12 +37,18 @@ class _Grid:
         rows, columns = np.ceil(extent / cell).astype(int)
         return cls(low, cell, (int(rows), int(columns)))
 
-    def locate(self, uv: Array) -> tuple[NDArray[np.int64], Mask]:
-        """Return the cell (N,) of points (N, 2) in the plane, and whether it exists."""
-        i = np.floor((uv[:, 0] - self.low[0]) / self.cell).astype(np.int64)
-        j = np.floor((uv[:, 1] - self.low[1]) / self.cell).astype(np.int64)
-        inside = (i >= 0) & (i < self.shape[0]) & (j >= 0) & (j < self.shape[1])
-        return i * self.shape[1] + j, inside
+    def locate(self, points: Array, basis: Array) -> tuple[NDArray[np.int64], Mask]:
+        """Return the cell (N,) over which points (N, 3) stand, and whether it exists."""
+        cells = np.zeros(len(points), dtype=np.int64)
+        inside = np.ones(len(points), dtype=bool)
+        for axis in (0, 1):
+            place = points @ (basis[:, axis] / self.cell)
+            place -= self.low[axis] / self.cell
+            inside &= (place >= 0) & (place < self.shape[axis])
+            np.clip(place, 0, self.shape[axis], out=place)
+            cells *= self.shape[axis]
+            cells += place.astype(np.int64)
+        return cells, inside
 
     def ranges(self, foot: Array, distance: float) -> Array:
         """Return the range of each cell from a sensor `distance` above the point `foot`."""
@@ -90,14 +97,14 @@ def relief(
     standing = heights > tall
     spacing = float(np.sqrt(plane.area / max(1.0, plane.share * len(points))))
     grid = _Grid.over(plane, spacing, settings.cell_m)
-    cells, inside = grid.locate(points @ plane.basis)
+    cells, inside = grid.locate(points, plane.basis)
     used = np.flatnonzero(inside & (heights > -3 * sigmas - settings.grow_height_m))
     cells = cells[used]
     capped = np.minimum(heights[used], tall[used])
     mean, count = _window_means(cells, capped, grid.shape)
     ranges = grid.ranges(viewpoint @ plane.basis, float(plane.heights(viewpoint)))
     kept = _certain_patches(mean, count, noise.at(ranges), settings)
-    top = ndimage.maximum_filter(np.where(kept, mean, 0.0), 3)
+    top = _gather(np.maximum, np.where(kept, mean, 0.0))
     chosen = np.flatnonzero(kept.ravel()[cells])
     rows, cells = used[chosen], cells[chosen]
     least = _threshold(top.ravel()[cells], mean.ravel()[cells], sigmas[rows], settings)
@@ -125,23 +132,34 @@ def _window_means(
 ) -> tuple[Array, Array]:
     """Return mean height and number of points of the 3x3 window around each cell."""
     size = shape[0] * shape[1]
-    count = np.bincount(cells, minlength=size).astype(np.float64).reshape(shape)
-    total = np.bincount(cells, weights=heights, minlength=size).reshape(shape)
-    count = np.rint(9 * ndimage.uniform_filter(count, 3, mode="constant"))
-    total = 9 * ndimage.uniform_filter(total, 3, mode="constant")
-    return np.divide(total, count, out=np.zeros(shape), where=count > 0), count
+    number = np.asarray(np.bincount(cells, minlength=size), dtype=np.float64)
+    total = np.asarray(np.bincount(cells, heights, size), dtype=np.float64)
+    counts = _gather(np.add, number.reshape(shape))
+    totals = _gather(np.add, total.reshape(shape))
+    return np.divide(totals, counts, out=np.zeros(shape), where=counts > 0), counts
+
+
+def _gather(combine: np.ufunc, grid: Array) -> Array:
+    """Return each cell combined with its eight neighbours, by sum or maximum."""
+    for axis in (0, 1):
+        lines = np.moveaxis(grid.copy(), axis, 0)
+        source = np.moveaxis(grid, axis, 0)
+        combine(lines[1:], source[:-1], out=lines[1:])
+        combine(lines[:-1], source[1:], out=lines[:-1])
+        grid = np.moveaxis(lines, 0, axis)
+    return grid
 
 
 def _certain_patches(mean: Array, count: Array, sigma: Array, settings: PerceptionSettings) -> Mask:
     """Return the windows that surely stand out, with the weaker ones joined to them."""
     significance = mean * np.sqrt(count) / sigma
-    seen = np.abs(significance[count > 0])
+    seen = np.abs(significance[count > 0][::_EVERY])
     if len(seen):
         significance /= max(1.0, SIGMA_PER_MEDIAN * float(np.median(seen)))
     weak = (mean > settings.grow_height_m) & (significance > settings.grow_sigmas)
     sure = weak & (mean > settings.seed_height_m) & (significance > settings.seed_sigmas)
     sure &= count > 1
-    patches, number = ndimage.label(weak, _EIGHT)
-    certain = np.zeros(number + 1, dtype=bool)
+    patches, highest = ndimage.label(weak, _EIGHT)
+    certain = np.zeros(highest + 1, dtype=bool)
     certain[patches[sure]] = True
     return np.asarray(certain[patches])

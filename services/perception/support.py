@@ -5,6 +5,7 @@ from __future__ import annotations
 import numpy as np
 from numpy.typing import NDArray
 
+from services.perception.cloud import thin
 from services.perception.observation import Observation
 from services.perception.plane import MAP_VOXEL_M, Plane
 from services.perception.ransac import find_planes
@@ -85,8 +86,7 @@ def _is_bare_surface(plane: Plane) -> bool:
 
 def _spacing(view: Observation) -> float:
     """Return the typical distance between points, from the surface that they cover."""
-    cells = np.unique(np.floor(view.points / MAP_VOXEL_M).astype(np.int64), axis=0)
-    return float(MAP_VOXEL_M * np.sqrt(len(cells) / len(view.points)))
+    return float(MAP_VOXEL_M * np.sqrt(len(thin(view.points, MAP_VOXEL_M)) / len(view.points)))
 
 
 def _nothing_on(top: Tabletop, view: Observation, settings: PerceptionSettings) -> NoObject:
@@ -110,7 +110,8 @@ def _nothing_on(top: Tabletop, view: Observation, settings: PerceptionSettings) 
         heights = top.plane.heights(view.points)
         beyond = (heights < -max(0.01, 6 * top.residual)) & (heights > -_BEHIND_M)
         behind = int(np.count_nonzero(top.plane.carries(view.points[beyond], 0.0)))
-        if behind >= settings.min_object_points:
+        off = len(view.points) - top.inliers
+        if behind >= max(settings.min_object_points, off / 2):
             message += (
                 f"; {behind} points lie behind it as seen from the viewpoint "
                 f"{[round(float(c), 3) for c in view.viewpoint]}: is that where the sensor is?"

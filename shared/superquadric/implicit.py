@@ -30,8 +30,8 @@ def radial_distance(superquadric: Superquadric, points: Array) -> Array:
 
     Negative inside. |p| (1 - F^(-e1/2)): the thesis prints the exponent of
     Eq. 5.1 as +e1/2, its code uses -e1/2, which is the radial distance proper
-    (Gross and Boult 1988) and what this function computes. At the centre, where
-    no ray is defined, it is minus the smallest semi-axis.
+    (Gross and Boult 1988) and what this function computes. No value is below
+    minus the smallest semi-axis: no interior point is deeper than that.
     """
     e1, e2 = superquadric.exponents
     local = superquadric.to_local(points)

@@ -8,7 +8,7 @@ from sklearn.cluster import DBSCAN
 
 Array = NDArray[np.float64]
 
-CELLS_PER_EPS = 6
+CELLS_PER_EPS = 8
 
 
 def dense_clusters(points: Array, eps: float, min_points: int) -> list[NDArray[np.int64]]:
@@ -16,7 +16,7 @@ def dense_clusters(points: Array, eps: float, min_points: int) -> list[NDArray[n
 
     A depth image has hundreds of points within `eps` of each other, and DBSCAN
     lists all such pairs. So the points are first gathered in cubic cells of
-    eps / 6; DBSCAN runs on the cells' means, each with as much weight as it has
+    eps / 8; DBSCAN runs on the cells' means, each with as much weight as it has
     points. A distance is off by at most a cell's diagonal, which moves points at
     the rim of a cluster and leaves the clusters.
 

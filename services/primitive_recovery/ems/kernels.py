@@ -26,10 +26,12 @@ _TINY = 1e-12
 def radial_distances(points: Array, shape: Array, rotation: Array, position: Array) -> Array:
     """Return signed distances (N,) to the surface along the ray from the centre.
 
-    |q| (1 - F^(-e1/2)) for q in the superquadric's frame, negative inside. At the
-    very centre, which has no ray, it is that of a point beside it.
+    |q| (1 - F^(-e1/2)) for q in the superquadric's frame, negative inside, and as
+    in `shared.superquadric.radial_distance` no lower than minus the smallest
+    semi-axis: no point inside is farther from the surface than that.
     """
     e1, e2 = shape[0], shape[1]
+    lowest = -min(shape[2], shape[3], shape[4])
     out = np.empty(points.shape[0])
     logs = np.empty(3)
     for n in range(points.shape[0]):
@@ -38,14 +40,14 @@ def radial_distances(points: Array, shape: Array, rotation: Array, position: Arr
             value = 0.0
             for m in range(3):
                 value += rotation[m, k] * (points[n, m] - position[m])
-            value = max(abs(value), _TINY * shape[2 + k])
             squared += value * value
-            logs[k] = math.log(value / shape[2 + k])
+            logs[k] = math.log(max(abs(value) / shape[2 + k], _TINY))
         gap = 2.0 / e2 * abs(logs[0] - logs[1])
         flat = max(logs[0], logs[1]) + 0.5 * e2 * math.log1p(math.exp(-gap))
         gap = 2.0 / e1 * abs(flat - logs[2])
         scale = max(flat, logs[2]) + 0.5 * e1 * math.log1p(math.exp(-gap))
-        out[n] = math.sqrt(squared) * (1.0 - math.exp(-scale))
+        distance = math.sqrt(squared) * (1.0 - math.exp(-scale))
+        out[n] = max(distance, lowest) if squared > 0.0 else lowest
     return out
 
 
@@ -59,7 +61,8 @@ def normal_equations(
     R exp([omega]), the position as t. With L = log F^(e1/2), the derivatives of
     d = |q| (1 - exp(-L)) follow from those of two nested log-sum-exps: to a log
     coordinate it is that term's share, to an exponent half the shares' entropy,
-    so nothing overflows for small exponents.
+    so nothing overflows for small exponents. Here d has no lower limit: it must
+    be smooth.
     """
     e1, e2 = shape[0], shape[1]
     rows = np.empty(11)

@@ -81,12 +81,14 @@ def box(size: tuple[float, float, float], turn: float = 0.3, step: float = 0.002
     points, normals = [], []
     for axis in range(3):
         u, v = (a for a in range(3) if a != axis)
-        grid = np.meshgrid(
-            np.arange(-half[u], half[u], step), np.arange(-half[v], half[v], step)
-        )
+        grid = np.meshgrid(np.arange(-half[u], half[u], step), np.arange(-half[v], half[v], step))
         for sign in (-1.0, 1.0):
             face = np.zeros((grid[0].size, 3))
-            face[:, u], face[:, v], face[:, axis] = grid[0].ravel(), grid[1].ravel(), sign * half[axis]
+            face[:, u], face[:, v], face[:, axis] = (
+                grid[0].ravel(),
+                grid[1].ravel(),
+                sign * half[axis],
+            )
             points.append(face)
             normals.append(np.tile(sign * np.eye(3)[axis], (len(face), 1)))
     rotation = about_z(turn)

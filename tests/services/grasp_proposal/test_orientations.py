@@ -13,7 +13,9 @@ def random_frames(count: int = 50) -> LocalFrames:
     rng = np.random.default_rng(3)
     normals = unit(rng.normal(size=(count, 3)))
     axes = np.array([any_perpendicular(normal) for normal in normals])
-    return LocalFrames(rng.normal(size=(count, 3)) * 0.05, normals, axes, unit(rng.normal(size=(count, 3))))
+    return LocalFrames(
+        rng.normal(size=(count, 3)) * 0.05, normals, axes, unit(rng.normal(size=(count, 3)))
+    )
 
 
 @pytest.mark.parametrize("up", [UP, None])

@@ -3,6 +3,7 @@ from __future__ import annotations
 import numpy as np
 
 from services.grasp_proposal.surface import estimate_normals, local_frames
+from services.grasp_proposal.workspace import thin
 from tests.services.grasp_proposal.scenes import about_z, box, lying_cylinder
 
 
@@ -25,11 +26,15 @@ def test_without_a_viewpoint_normals_point_away_from_the_centroid() -> None:
 def test_the_curvature_axis_of_a_cylinder_is_its_axis() -> None:
     scene = lying_cylinder(turn=0.5)
     inner = np.linalg.norm(scene.points[:, :2], axis=1) < 0.05
+    surface = thin(scene.points, (0.003,), 0)
     frames = local_frames(
-        scene.points[inner][::50], scene.normals[inner][::50], scene.points, scene.normals
+        scene.points[inner][::50],
+        scene.normals[inner][::50],
+        scene.points[surface],
+        scene.normals[surface],
     )
     axis = about_z(0.5)[:, 1]
-    assert np.abs(frames.curvature_axes @ axis).min() > 0.98
+    assert np.abs(frames.curvature_axes @ axis).min() > 0.95
     assert np.abs(frames.part_axes @ axis).min() > 0.95
 
 

@@ -33,5 +33,5 @@ def test_a_rigid_motion_changes_nothing(wall: np.ndarray) -> None:
     where = np.random.default_rng(0).uniform([-0.04, -0.04, 0.9], [0.04, 0.04, 1.2], (200, 3))
     moved = SightMap.of(transform_points(motion, wall), motion[:3, 3])
     expected = SightMap.of(wall, np.zeros(3)).depth_behind(where)
-    assert moved.depth_behind(transform_points(motion, where)) == pytest.approx(expected, abs=1e-6)
+    assert moved.depth_behind(transform_points(motion, where)) == pytest.approx(expected, abs=1e-4)
     assert (expected > 0.1).any()

@@ -6,16 +6,19 @@ World: the table's top is z = 0, z is up, metres. Camera: optical frame, z ahead
 from __future__ import annotations
 
 from dataclasses import dataclass, field
+from typing import Any
 
 import numpy as np
 import open3d as o3d
 from numpy.typing import NDArray
 
 from shared.geometry.points import points_from_depth
-from shared.geometry.se3 import inverse, transform_points
+from shared.geometry.se3 import inverse
 from shared.schemas.scene import PerceiveRequest
 
 Array = NDArray[np.float64]
+
+Size = tuple[float, float, float]
 
 SCALE = 1e-4
 
@@ -67,26 +70,26 @@ class Shot:
 class Stage:
     """Things to be seen; thin walls are boxes."""
 
-    meshes: list[tuple[str, o3d.geometry.TriangleMesh]] = field(default_factory=list)
+    meshes: list[tuple[str, Any]] = field(default_factory=list)
 
-    def box(self, name: str, size: tuple[float, ...], at: tuple[float, ...]) -> Stage:
+    def box(self, name: str, size: Size, at: Size) -> Stage:
         """Add an upright box whose bottom face is centred at `at`."""
-        mesh = o3d.geometry.TriangleMesh.create_box(*size)
+        mesh: Any = o3d.geometry.TriangleMesh.create_box(*size)
         corner = np.array([-size[0] / 2, -size[1] / 2, 0.0]) + at
         self.meshes.append((name, mesh.translate(corner)))
         return self
 
-    def ellipsoid(self, name: str, radii: tuple[float, ...], at: tuple[float, ...]) -> Stage:
+    def ellipsoid(self, name: str, radii: Size, at: Size) -> Stage:
         """Add an ellipsoid whose lowest point is `at`."""
-        mesh = o3d.geometry.TriangleMesh.create_sphere(1.0, 40)
+        mesh: Any = o3d.geometry.TriangleMesh.create_sphere(1.0, 40)
         vertices = np.asarray(mesh.vertices) * radii + np.array([0.0, 0.0, radii[2]]) + at
         mesh.vertices = o3d.utility.Vector3dVector(vertices)
         self.meshes.append((name, mesh))
         return self
 
-    def cylinder(self, name: str, radius: float, height: float, at: tuple[float, ...]) -> Stage:
+    def cylinder(self, name: str, radius: float, height: float, at: Size) -> Stage:
         """Add an upright cylinder whose bottom is centred at `at`."""
-        mesh = o3d.geometry.TriangleMesh.create_cylinder(radius, height, 40)
+        mesh: Any = o3d.geometry.TriangleMesh.create_cylinder(radius, height, 40)
         self.meshes.append((name, mesh.translate(np.array([0.0, 0.0, height / 2]) + at)))
         return self
 
@@ -106,7 +109,7 @@ class Stage:
         for _, mesh in self.meshes:
             scene.add_triangles(o3d.t.geometry.TriangleMesh.from_legacy(mesh))
         rays = scene.create_rays_pinhole(
-            o3d.core.Tensor(intrinsics), o3d.core.Tensor(inverse(camera)), width, height
+            _tensor(intrinsics), _tensor(inverse(camera)), width, height
         )
         cast = scene.cast_rays(rays, nthreads=1)
         depth = cast["t_hit"].numpy().astype(np.float64)
@@ -122,6 +125,10 @@ class Stage:
         )
 
 
+def _tensor(matrix: Array) -> o3d.core.Tensor:
+    return o3d.core.Tensor(matrix, o3d.core.float64, o3d.core.Device("CPU:0"))
+
+
 def spoon(stage: Stage) -> Stage:
     """Add a spoon 10 mm high: a bowl, and a handle 8 mm wide and 4 mm thick."""
     stage.ellipsoid("bowl", (0.03, 0.02, 0.005), (0.0, 0.0, 0.0))
@@ -133,8 +140,3 @@ def small_view() -> Shot:
     stage = Stage().table().box("box", (0.06, 0.09, 0.05), (0.0, 0.0, 0.0))
     stage.ellipsoid("ball", (0.035, 0.035, 0.035), (0.05, 0.2, 0.0))
     return stage.cylinder("can", 0.033, 0.11, (0.08, -0.18, 0.0)).shoot(size=(240, 320))
-
-
-def moved(points: Array, motion: Array) -> Array:
-    """Return points (N, 3) moved by `motion` (4, 4); NaN rows stay NaN."""
-    return transform_points(motion, points)

@@ -5,8 +5,8 @@ from __future__ import annotations
 import numpy as np
 
 from services.primitive_recovery.app import create_app
-from shared.schemas.primitive import RECOVER, RecoverRequest, RecoverResponse
-from shared.wire import NPZ, decode, encode
+from shared.schemas.primitive import RECOVER, RecoverRequest
+from shared.wire import NPZ, encode
 from tests.services.primitive_recovery.clouds import superquadric, surface_points
 from tests.support.serving import in_process
 

@@ -61,8 +61,8 @@ def test_size_and_the_order_of_the_first_two_axes_do_not_matter(
 def test_the_axes_of_an_ellipsoid_do_not_matter(classifier: ShapeClassifier) -> None:
     for axes in [(0.05, 0.05, 0.055), (0.02, 0.03, 0.1)]:
         names = {
-            classifier.classify([superquadric((1.0, 1.0), order)])[0][0]
-            for order in itertools.permutations(axes)
+            classifier.classify([superquadric((1.0, 1.0), (a, b, c))])[0][0]
+            for a, b, c in itertools.permutations(axes)
         }
         assert len(names) == 1
 

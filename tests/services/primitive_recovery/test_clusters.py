@@ -21,7 +21,8 @@ def patches(rng: np.random.Generator) -> Array:
             (150, [0.01, 0.01, 0.001], [0.0, 0.08, 0.82]),
         ]
     ]
-    return np.vstack([*blocks, rng.uniform(-0.3, 0.3, (80, 3)) + [0.0, 0.0, 0.4]])
+    strays = rng.uniform([-0.3, -0.3, 0.1], [0.3, 0.3, 0.7], (80, 3))
+    return np.vstack([*blocks, strays])
 
 
 @pytest.mark.parametrize("min_points", [50, 100, 200])

@@ -1,6 +1,7 @@
 from __future__ import annotations
 
 import dataclasses
+from typing import Any
 
 import numpy as np
 from scipy.spatial.transform import Rotation
@@ -16,8 +17,8 @@ from tests.services.primitive_recovery.clouds import (
 )
 
 
-def parts(points: Array, **changes: float) -> list[Part]:
-    parameters = dataclasses.replace(PRESETS["simulation"], **changes)  # type: ignore[arg-type]
+def parts(points: Array, **changes: Any) -> list[Part]:
+    parameters = dataclasses.replace(PRESETS["simulation"], **changes)
     return decompose(points, parameters, np.zeros(3), 1000, np.random.default_rng(0))
 
 

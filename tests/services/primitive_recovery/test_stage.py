@@ -92,7 +92,8 @@ def test_the_setting_is_the_default_preset(can: Array) -> None:
 
 def turned_plane(rng: np.random.Generator) -> Array:
     flat = rng.uniform(-0.05, 0.05, (500, 2))
-    return flat @ np.array([[1.0, 0.5, 0.2], [0.1, -0.4, 0.9]]) + [0.0, 0.0, 0.8]
+    across = np.array([[1.0, 0.5, 0.2], [0.1, -0.4, 0.9]])
+    return np.asarray(flat @ across + [0.0, 0.0, 0.8])
 
 
 @pytest.mark.parametrize(

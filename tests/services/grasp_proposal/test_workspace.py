@@ -1,0 +1,98 @@
+from __future__ import annotations
+
+import numpy as np
+import pytest
+
+from services.grasp_proposal.workspace import build_workspace, thin
+from shared.errors import EmptyCloud, InvalidInput
+from shared.geometry.se3 import pose_matrix, transform_points
+from shared.schemas.scene import SupportPlane
+from tests.services.grasp_proposal.scenes import about_z, lying_cylinder
+
+SCENE = lying_cylinder()
+TILT = about_z(0.4)[[1, 2, 0]] @ about_z(-1.1)
+
+
+def test_the_workspace_is_tied_to_the_scene() -> None:
+    motion = pose_matrix([3.0, -2.0, 1.0], TILT)
+    here = build_workspace(SCENE.request())
+    there = build_workspace(SCENE.moved(motion).request())
+    assert here.up == pytest.approx([0, 0, 1])
+    assert np.allclose(there.outer_from_work, motion @ here.outer_from_work, atol=1e-9)
+    assert there.viewpoint == pytest.approx(here.viewpoint, abs=1e-9)
+    assert there.support_offset == pytest.approx(here.support_offset, abs=1e-9)
+
+
+def test_heights_are_those_above_the_table() -> None:
+    work = build_workspace(SCENE.request())
+    outer = transform_points(work.outer_from_work, work.points)
+    assert work.heights(work.points) == pytest.approx(outer[:, 2], abs=1e-9)
+    free = build_workspace(SCENE.request(plane=None))
+    assert np.isinf(free.heights(free.points)).all()
+
+
+def test_a_plane_with_a_long_normal_is_the_same_plane() -> None:
+    long = SupportPlane(normal=(0, 0, 4.0), offset=-2.0, inliers=1, residual_mm=1)
+    work = build_workspace(SCENE.request(plane=long))
+    outer = transform_points(work.outer_from_work, work.points)
+    assert work.heights(work.points) == pytest.approx(outer[:, 2] - 0.5, abs=1e-9)
+
+
+def test_the_focus_survives_thinning() -> None:
+    focus = np.zeros(len(SCENE.points), dtype=bool)
+    focus[17] = True
+    work = build_workspace(SCENE.request(focus=focus))
+    kept = transform_points(work.outer_from_work, work.points[work.in_focus])
+    assert np.linalg.norm(kept - SCENE.points[17], axis=1).min() < 1e-9
+
+
+def test_a_viewpoint_among_the_points_says_nothing() -> None:
+    centre = tuple(SCENE.points.mean(axis=0).tolist())
+    assert build_workspace(SCENE.request(viewpoint=centre)).viewpoint is None
+    assert build_workspace(SCENE.request()).viewpoint is not None
+
+
+def test_far_obstacles_are_left_out() -> None:
+    near, far = np.full((5, 3), 0.2), np.full((50, 3), 30.0)
+    work = build_workspace(SCENE.request(obstacle_points=np.vstack([far, near])))
+    assert len(work.obstacles) == 5
+
+
+@pytest.mark.parametrize("scale", [1e-6, 0.1, 100.0])
+def test_thinning_bounds_the_count_at_any_scale(scale: float) -> None:
+    points = np.random.default_rng(0).uniform(-scale, scale, (60_000, 3))
+    kept = thin(points, (0.003, 0.004), 1500)
+    assert 1 <= len(kept) <= 20_000
+    assert (np.diff(kept) > 0).all()
+
+
+def test_thinning_leaves_a_point_near_every_point() -> None:
+    kept = SCENE.points[thin(SCENE.points, (0.003,), 0)]
+    gaps = np.linalg.norm(SCENE.points[::20, None] - kept[None], axis=2).min(axis=1)
+    assert gaps.max() <= 0.003 * np.sqrt(3)
+    assert len(kept) < len(SCENE.points)
+
+
+@pytest.mark.parametrize(
+    ("changes", "said", "error"),
+    [
+        ({"points": np.zeros((9, 3))}, "9 points", EmptyCloud),
+        ({"points": np.empty((0, 3))}, "0 points", EmptyCloud),
+        ({"points": np.full((20, 3), np.nan)}, "points must be finite", InvalidInput),
+        ({"points": np.full((20, 3), 1e200)}, "metres", InvalidInput),
+        ({"obstacle_points": np.full((2, 3), np.inf)}, "obstacle_points must", InvalidInput),
+        ({"focus": np.ones(3, dtype=bool)}, "focus has 3 entries", InvalidInput),
+        ({"focus": np.zeros(len(SCENE.points), dtype=bool)}, "no true entry", InvalidInput),
+        ({"plane": None, "up": (0, 0, 0)}, "up must not be zero", InvalidInput),
+        (
+            {"plane": SupportPlane(normal=(0, 0, 0), offset=0, inliers=1, residual_mm=1)},
+            "normal must not be zero",
+            InvalidInput,
+        ),
+    ],
+)
+def test_bad_input_is_named(
+    changes: dict[str, object], said: str, error: type[InvalidInput]
+) -> None:
+    with pytest.raises(error, match=said):
+        build_workspace(SCENE.request(**changes))
