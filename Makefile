@@ -2,8 +2,8 @@
 .DEFAULT_GOAL := help
 .PHONY: help setup run serve test check lock clean
 
-SAMPLE ?= experiments/samples/saucepan.npz
-TASK ?= cooking
+SAMPLE ?= experiments/samples/bottle.npz
+TASK ?= pouring
 PICTURE ?= out/grasp.png
 
 help:  ## List the targets

@@ -97,11 +97,6 @@ class Arm:
             self._bullet.resetJointState(self.body, finger, opening / 2)
 
     @property
-    def joints(self) -> Array:
-        states = self._bullet.getJointStates(self.body, JOINTS)
-        return np.array([state[0] for state in states])
-
-    @property
     def opening(self) -> float:
         """Distance between the pads, metres."""
         return float(sum(s[0] for s in self._bullet.getJointStates(self.body, FINGERS)))

@@ -45,6 +45,7 @@ DRIVE_S, APPROACH_S, CLOSE_S, LIFT_S, HOLD_S = 1.5, 1.0, 0.75, 1.5, 1.0
 PRESS_FORCE = 30.0
 """Newtons, mean over `FORCE_WINDOW` steps: the hand presses instead of moving in."""
 FORCE_WINDOW = 24
+PROPPED = "; the object, which would not stand by itself, was propped up until it was gripped"
 PUSHED_DISTANCE = 0.04
 PUSHED_ANGLE = np.radians(45.0)
 
@@ -118,6 +119,7 @@ class Run:
     def answer(self) -> ExecuteResponse:
         """Plan, move, and judge."""
         plan = plan_motion(self._arm, self._world, self._world_from_grasp, self._opening)
+        propped = self._world.propped
         verdict = obstructed(plan) if isinstance(plan, Obstruction) else self._move(plan)
         rise = self._world.rise()
         if not np.isfinite(rise):
@@ -126,7 +128,7 @@ class Run:
         return ExecuteResponse(
             success=verdict.outcome == "lifted",
             outcome=verdict.outcome,
-            message=verdict.message,
+            message=verdict.message + (PROPPED if propped else ""),
             lift_height=round(rise, 4),
             phases=tuple(self._phases),
         )

@@ -6,7 +6,7 @@ import numpy as np
 from numpy.typing import NDArray
 
 from services.grasp_proposal.hand import Hand
-from services.grasp_proposal.search import Placements
+from services.grasp_proposal.placements import Placements
 from services.grasp_proposal.workspace import Workspace
 
 Array = NDArray[np.float64]

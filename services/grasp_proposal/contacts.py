@@ -3,26 +3,21 @@
 from __future__ import annotations
 
 from dataclasses import dataclass, replace
-from typing import NamedTuple
 
 import numpy as np
 from numpy.typing import NDArray
 
 from services.grasp_proposal.boxes import chunks, finger_hits, local_coordinates, palm_hits
 from services.grasp_proposal.hand import Hand
-from services.grasp_proposal.ragged import padded_columns
-from services.grasp_proposal.search import Placements
+from services.grasp_proposal.placements import Placements
+from services.grasp_proposal.side import CONTINUES, touch_side
+from services.grasp_proposal.slab import cut_slab
 from services.grasp_proposal.workspace import Workspace
 from shared.geometry.rotation import unit
 
 Array = NDArray[np.float64]
 Mask = NDArray[np.bool_]
 
-_EDGE = 0.003
-_CONTINUES = 0.006
-_CORNER = 0.004
-_STRIPS = 4
-_SLOPE = 0.75
 _MAX_HIDDEN = 0.4
 _LEAST_POINTS = 3
 
@@ -89,59 +84,16 @@ def find_contacts(workspace: Workspace, hand: Hand, placed: Placements) -> Conta
     return Contacts(placed=replace(placed, **edges), **joined)
 
 
-class _Side(NamedTuple):
-    """Contact with one pad, each (G,): as in `Contacts`, and the mean x of its points."""
-
-    alignment: Array
-    sloped: Mask
-    coverage: Array
-    x: Array
-
-
-@dataclass(frozen=True)
-class _Slab:
-    """The surface about a finger's width before each of G hands; rows are padded with NaN.
-
-    Attributes
-    ----------
-    local : (G, 3, n) array
-        Coordinates from the placement's origin, along its axes.
-    points, normals : (G, n, 3) float32 arrays
-        The same points in the workspace.
-    in_focus : (G, n) bool array
-    """
-
-    local: NDArray[np.float32]
-    points: NDArray[np.float32]
-    normals: NDArray[np.float32]
-    in_focus: Mask
-
-
-def _slab(workspace: Workspace, hand: Hand, placed: Placements) -> _Slab:
-    local = local_coordinates(placed, workspace.points)
-    inside = np.abs(local[:, 0]) < hand.finger_width / 2 + _CONTINUES
-    inside &= local[:, 2] < (placed.tip + _CONTINUES)[:, None]
-    index, filled = padded_columns(inside)
-    gathered = np.take_along_axis(local, index[:, None], axis=2)
-    gathered[np.broadcast_to(~filled[:, None], gathered.shape)] = np.nan
-    return _Slab(
-        gathered,
-        workspace.points.astype(np.float32)[index],
-        workspace.normals.astype(np.float32)[index],
-        workspace.in_focus[index],
-    )
-
-
 def _contacts(workspace: Workspace, hand: Hand, placed: Placements) -> Contacts:
-    slab = _slab(workspace, hand, placed)
+    slab = cut_slab(workspace, placed, hand.finger_width / 2 + CONTINUES, CONTINUES)
     x, y, z = slab.local[:, 0], slab.local[:, 1], slab.local[:, 2]
     held = (np.abs(x) < hand.finger_width / 2) & (z < placed.tip[:, None])
     held &= (y > placed.left[:, None] - 0.001) & (y < placed.right[:, None] + 0.001)
     count = held.sum(axis=1)
     left, right = _span(y, held)
     front, _ = _span(z, held)
-    left_side = _side(workspace, placed, hand, slab, held, -1, left)
-    right_side = _side(workspace, placed, hand, slab, held, +1, right)
+    left_side = touch_side(workspace, placed, hand, slab, held, -1, left)
+    right_side = touch_side(workspace, placed, hand, slab, held, +1, right)
     left_hidden, right_hidden = _hidden_flanks(workspace, placed, right - left, hand)
     exact = replace(placed, left=left - left_hidden, right=right + right_hidden, front=front)
     width = exact.right - exact.left
@@ -161,59 +113,6 @@ def _contacts(workspace: Workspace, hand: Hand, placed: Placements) -> Contacts:
         palm_hit=palm_hits(exact, hand, local_coordinates(exact, workspace.coarse)),
         empty=count < _LEAST_POINTS,
     )
-
-
-def _side(
-    workspace: Workspace,
-    placed: Placements,
-    hand: Hand,
-    slab: _Slab,
-    held: Mask,
-    sign: int,
-    edge: Array,
-) -> _Side:
-    """Return the contact on one side (-1 left, +1 right).
-
-    The contact normal is that of the visible surface at the edge. Where the
-    surface ends there as the sensor saw it, the pad touches what lies behind the
-    outline; then the normal is that of the apparent contour, perpendicular to
-    both the line of sight and the outline (Cipolla and Giblin 1990).
-    """
-    x, z = slab.local[:, 0], slab.local[:, 2]
-    outwards = sign * (slab.local[:, 1] - edge[:, None].astype(np.float32))
-    contact = held & (outwards > -_EDGE)
-    weight = (contact / np.maximum(contact.sum(axis=1), 1)[:, None]).astype(np.float32)
-    closing = placed.rotation[:, :, 1]
-    normal = unit(np.einsum("gn,gni->gi", weight, slab.normals))
-    alignment = sign * np.einsum("gi,gi->g", normal, closing)
-    in_width = np.abs(x) < hand.finger_width / 2
-    beyond = in_width & (outwards > 0) & (outwards < _CONTINUES)
-    beyond &= z < (placed.tip + _CONTINUES)[:, None]
-    goes_on = beyond.any(axis=1)
-    if workspace.viewpoint is not None:
-        centre = np.einsum("gn,gni->gi", weight, slab.points)
-        contour = unit(
-            np.cross(_outline(slab.points, weight, centre), centre - workspace.viewpoint)
-        )
-        facing = np.abs(np.einsum("gi,gi->g", contour, closing))
-        alignment = np.where(goes_on, alignment, np.maximum(alignment, facing))
-    strip = np.floor((x / hand.finger_width + 0.5) * _STRIPS)
-    filled = [(contact & (strip == s)).any(axis=1) for s in range(_STRIPS)]
-    mean_x = (np.where(contact, x, 0.0) * weight).sum(axis=1)
-    coverage = np.mean(filled, axis=0)
-    widens = (np.abs(x) > hand.finger_width / 2) & (outwards > _CORNER) & (z < placed.tip[:, None])
-    corner = (widens & (outwards < 3 * _CORNER)).any(axis=1) & (coverage * _STRIPS <= 1)
-    sloped = (goes_on & (alignment < _SLOPE)) | corner
-    return _Side(alignment, sloped, coverage, mean_x)
-
-
-def _outline(
-    points: NDArray[np.float32], weight: NDArray[np.float32], centre: NDArray[np.float32]
-) -> Array:
-    """Return the main direction (G, 3) of the weighted points (G, n, 3)."""
-    centred = (points - centre[:, None]) * np.sqrt(weight)[:, :, None]
-    _, vectors = np.linalg.eigh(np.matmul(centred.transpose(0, 2, 1), centred))
-    return np.asarray(vectors[:, :, 2])
 
 
 def _hidden_flanks(

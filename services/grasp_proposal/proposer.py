@@ -13,8 +13,9 @@ from services.grasp_proposal.diversity import distinct
 from services.grasp_proposal.gripper import choose_gripper, load_grippers
 from services.grasp_proposal.hand import Hand
 from services.grasp_proposal.orientations import hypothesise
+from services.grasp_proposal.placements import Placements
 from services.grasp_proposal.scorer import promise, score, tool_centre
-from services.grasp_proposal.search import Placements, search
+from services.grasp_proposal.search import search
 from services.grasp_proposal.settings import GraspProposalSettings
 from services.grasp_proposal.surface import local_frames
 from services.grasp_proposal.visibility import SightMap

@@ -7,7 +7,7 @@ from numpy.typing import NDArray
 
 from services.grasp_proposal.contacts import Contacts
 from services.grasp_proposal.hand import Hand
-from services.grasp_proposal.search import Placements
+from services.grasp_proposal.placements import Placements
 from services.grasp_proposal.visibility import SightMap
 from services.grasp_proposal.workspace import Workspace
 from shared.geometry.points import principal_axes

@@ -10,13 +10,13 @@ what lies between the nearest two such places left and right of the sample.
 from __future__ import annotations
 
 from collections import Counter
-from dataclasses import dataclass
 
 import numpy as np
 from numpy.typing import NDArray
 
 from services.grasp_proposal.hand import Hand
 from services.grasp_proposal.orientations import Hands
+from services.grasp_proposal.placements import Placements, join
 from services.grasp_proposal.ragged import padded_columns
 from services.grasp_proposal.workspace import Workspace
 
@@ -30,46 +30,6 @@ _DEPTHS = np.array([0.005, 0.010, 0.016, 0.023, 0.031, 0.041])
 _LEAST_DEPTH = 0.0005
 _GOOD_ENGAGEMENT = 0.022
 _CHUNK = 250_000
-
-
-@dataclass(frozen=True)
-class Placements:
-    """Hands with a place, one row each, coordinates in the workspace.
-
-    Attributes
-    ----------
-    rotation : (G, 3, 3) array
-        Columns x, y (closing), z (approach).
-    origin : (G, 3) array
-        The surface point that the hand was tried at.
-    tip : (G,) array
-        How far the finger tips reach past the origin along z.
-    left, right : (G,) arrays
-        Edges of the part along y, from the origin, left < right.
-    front : (G,) array
-        Where the part begins along z.
-    """
-
-    rotation: Array
-    origin: Array
-    tip: Array
-    left: Array
-    right: Array
-    front: Array
-
-    def take(self, chosen: NDArray[np.intp] | Mask) -> Placements:
-        """Return the chosen rows."""
-        return Placements(
-            self.rotation[chosen],
-            self.origin[chosen],
-            self.tip[chosen],
-            self.left[chosen],
-            self.right[chosen],
-            self.front[chosen],
-        )
-
-    def __len__(self) -> int:
-        return len(self.tip)
 
 
 def search(
@@ -104,7 +64,7 @@ def search(
         origin = np.repeat(points[rows], hands.rotations.shape[1], axis=0)[possible]
         rejected["collision_support"] += int((~possible).sum())
         found.append(_place(workspace, hand, rotation, origin, profile[possible], half, rejected))
-    return _join(found)
+    return join(found)
 
 
 def _profiles(
@@ -203,12 +163,3 @@ def _first_gap(occupied: Mask, need: int) -> NDArray[np.int32]:
         done = (free == need) & (last < 0)
         last[done] = max(step - need, 0)
     return last
-
-
-def _join(parts: list[Placements]) -> Placements:
-    return Placements(
-        *(
-            np.concatenate([getattr(part, name) for part in parts])
-            for name in ("rotation", "origin", "tip", "left", "right", "front")
-        )
-    )

@@ -2,14 +2,14 @@
 
 from __future__ import annotations
 
-import itertools
 from dataclasses import dataclass
 
 import numpy as np
 from numpy.typing import NDArray
 
+from services.grasp_proposal.checks import checked_points, checked_up
 from services.grasp_proposal.surface import estimate_normals
-from shared.errors import EmptyCloud, InvalidInput
+from services.grasp_proposal.thinning import MAX_POINTS, thin
 from shared.geometry.points import principal_axes
 from shared.geometry.rotation import frame_from_z, unit
 from shared.geometry.se3 import inverse, pose_matrix, transform_points
@@ -18,14 +18,10 @@ from shared.schemas.grasp import ProposeRequest
 Array = NDArray[np.float64]
 Mask = NDArray[np.bool_]
 
-MIN_POINTS = 10
-_MAX_COORDINATE = 1e4
 _FINE, _FINE_COUNT = (0.0015, 0.002, 0.0025, 0.003, 0.004), 3500
 _COARSE, _COARSE_COUNT = (0.003, 0.004, 0.005, 0.006), 1200
 _OBSTACLES = (0.004,)
-_MAX_POINTS = 20_000
 _HAND_REACH = 0.5
-_WHOLE = 200
 _STEEP = 0.98
 
 
@@ -84,16 +80,13 @@ def build_workspace(request: ProposeRequest) -> Workspace:
 
     Raises
     ------
-    EmptyCloud
-        Fewer than ten points.
-    InvalidInput
-        Non-finite or absurdly far points, a focus of another length or without
-        a point, a zero direction.
+    EmptyCloud, InvalidInput
+        See `checked_points` and `checked_up`.
     """
-    points, focus = _checked(request)
+    points, focus = checked_points(request)
     order = np.lexsort((focus, *points.T))
     points, focus = points[order], focus[order]
-    up, offset = _up_direction(request)
+    up, offset = checked_up(request)
     viewpoint = _usable_viewpoint(np.asarray(request.viewpoint, dtype=np.float64), points)
     outer_from_work = _scene_frame(points, up, viewpoint)
     work_from_outer = inverse(outer_from_work)
@@ -115,7 +108,7 @@ def build_workspace(request: ProposeRequest) -> Workspace:
         obstacles = transform_points(work_from_outer, request.obstacle_points)
         low, high = points.min(axis=0) - _HAND_REACH, points.max(axis=0) + _HAND_REACH
         obstacles = obstacles[((obstacles >= low) & (obstacles <= high)).all(axis=1)]
-        obstacles = obstacles[thin(obstacles, _OBSTACLES, _MAX_POINTS)]
+        obstacles = obstacles[thin(obstacles, _OBSTACLES, MAX_POINTS)]
     coarse = thin(kept, _COARSE, _COARSE_COUNT)
     normals = estimate_normals(kept, kept[coarse], seen_from)
     return Workspace(
@@ -130,81 +123,6 @@ def build_workspace(request: ProposeRequest) -> Workspace:
         viewpoint=seen_from,
         outer_from_work=outer_from_work,
     )
-
-
-def thin(points: Array, voxels: tuple[float, ...], enough: int) -> NDArray[np.intp]:
-    """Return indices of one point per voxel, in rising order.
-
-    The first voxel size (metres) that leaves at most `enough` points is taken,
-    else the last, doubled until 20,000 suffice. Clouds of up to 200 points stay whole.
-    """
-    first = np.arange(len(points))
-    if len(points) <= _WHOLE:
-        return first
-    low = points.min(axis=0)
-    finest = float(np.ptp(points, axis=0).max()) / 1e6
-    doubled = (voxels[-1] * 2.0**k for k in range(1, 64))
-    for step, voxel in enumerate(itertools.chain(voxels, doubled)):
-        cells = np.floor((points[first] - low) / max(voxel, finest)).astype(np.int64)
-        span = cells.max(axis=0) + 1
-        key = (cells[:, 0] * span[1] + cells[:, 1]) * span[2] + cells[:, 2]
-        kept = np.sort(np.unique(key, return_index=True)[1])
-        if len(kept) < MIN_POINTS:  # all in a few voxels: still give neighbours to everyone
-            return first[np.linspace(0, len(first) - 1, _WHOLE).astype(np.intp)]
-        first = first[kept]
-        if len(first) <= (enough if step < len(voxels) - 1 else _MAX_POINTS):
-            break
-    return first
-
-
-def _checked(request: ProposeRequest) -> tuple[Array, Mask]:
-    for name in ("points", "obstacle_points"):
-        array = getattr(request, name)
-        if array is None:
-            continue
-        if not np.isfinite(array).all():
-            raise InvalidInput(f"{name} must be finite", field=name, allowed="finite metres")
-        if len(array) and np.abs(array).max() > _MAX_COORDINATE:
-            raise InvalidInput(
-                f"{name} reach {np.abs(array).max():.3g} m; are they in metres?",
-                field=name,
-                found=float(np.abs(array).max()),
-                allowed=_MAX_COORDINATE,
-            )
-    points = request.points
-    if len(points) < MIN_POINTS:
-        raise EmptyCloud(
-            f"points holds {len(points)} points, at least {MIN_POINTS} are needed",
-            field="points",
-            found=len(points),
-            allowed=MIN_POINTS,
-        )
-    if request.focus is None:
-        return points, np.ones(len(points), dtype=np.bool_)
-    if len(request.focus) != len(points):
-        raise InvalidInput(
-            f"focus has {len(request.focus)} entries for {len(points)} points",
-            field="focus",
-            found=len(request.focus),
-            allowed=len(points),
-        )
-    if not request.focus.any():
-        raise InvalidInput("focus has no true entry: there is nothing to grasp", field="focus")
-    return points, request.focus
-
-
-def _up_direction(request: ProposeRequest) -> tuple[Array | None, float | None]:
-    if request.plane is not None:
-        normal = np.asarray(request.plane.normal, dtype=np.float64)
-        length = float(np.linalg.norm(normal))
-        if not length > 0:
-            raise InvalidInput("the plane's normal must not be zero", field="plane.normal")
-        return normal / length, request.plane.offset / length
-    if request.up is not None:
-        if not np.linalg.norm(request.up) > 0:
-            raise InvalidInput("up must not be zero", field="up")
-        return unit(request.up), None
-    return None, None
 
 
 def _usable_viewpoint(viewpoint: Array, points: Array) -> Array | None:

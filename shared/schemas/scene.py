@@ -75,7 +75,7 @@ class PerceiveResponse(Message):
     obstacle_points: Points
     """Other things near the object that a hand could hit, thinned out; not the support plane."""
     plane: SupportPlane | None
-    """None for `input = object`, where the surface was never seen."""
+    """None where no support surface was seen, as with `input = object`."""
     up: Vector3
     """Unit vector against gravity: the plane's normal; without a plane, best guess."""
     input_points: int

@@ -78,6 +78,13 @@ def test_a_handle_is_grasped_through_its_opening() -> None:
     assert answer.outcome == "lifted", answer.message
 
 
+def test_an_object_that_cannot_stand_is_held_up_and_lifted() -> None:
+    leaning = (0.1, 1.0, 0.015, 0.015, 0.1, 0.0, 0.0, 0.12, 0.0, 0.25, 0.0, 0.97)
+    answer = execute(request((0, 0, 0.12), from_above(), primitives=(leaning,), width=0.03))
+    assert answer.outcome == "lifted", answer.message
+    assert "propped up" in answer.message
+
+
 def test_beside_the_object_is_missed() -> None:
     answer = execute(request((0.12, 0, 0.12), from_above(), cylinder()))
     assert answer.outcome == "missed"

@@ -8,8 +8,8 @@ import pytest
 from services.grasp_proposal.contacts import Contacts, find_contacts
 from services.grasp_proposal.gripper import load_grippers
 from services.grasp_proposal.hand import Hand
+from services.grasp_proposal.placements import Placements
 from services.grasp_proposal.scorer import factors, score, tool_centre
-from services.grasp_proposal.search import Placements
 from services.grasp_proposal.settings import GraspProposalSettings
 from services.grasp_proposal.visibility import SightMap
 from services.grasp_proposal.workspace import Workspace, build_workspace

@@ -3,7 +3,7 @@ from __future__ import annotations
 import numpy as np
 
 from services.grasp_proposal.surface import estimate_normals, local_frames
-from services.grasp_proposal.workspace import thin
+from services.grasp_proposal.thinning import thin
 from tests.services.grasp_proposal.scenes import about_z, box, lying_cylinder
 
 

@@ -3,7 +3,8 @@ from __future__ import annotations
 import numpy as np
 import pytest
 
-from services.grasp_proposal.workspace import build_workspace, thin
+from services.grasp_proposal.thinning import thin
+from services.grasp_proposal.workspace import build_workspace
 from shared.errors import EmptyCloud, InvalidInput
 from shared.geometry.se3 import pose_matrix, transform_points
 from shared.schemas.scene import SupportPlane

@@ -2,6 +2,9 @@
 
 from __future__ import annotations
 
+import os
+import subprocess
+import sys
 from concurrent.futures import ThreadPoolExecutor
 
 import numpy as np
@@ -13,6 +16,7 @@ from scipy.spatial.transform import Rotation
 from services.perception.perceive import Perception
 from shared.geometry.se3 import pose_matrix, transform_points
 from shared.schemas.scene import PerceiveRequest
+from shared.settings import PROJECT_ROOT
 from shared.wire import NPZ, encode
 from tests.services.perception.scenes import Shot, small_view
 
@@ -80,6 +84,31 @@ def test_the_same_request_gives_the_same_bytes_whoever_else_asks(noisy: Shot) ->
     with ThreadPoolExecutor(4) as pool:
         together = list(pool.map(lambda r: encode(STAGE.perceive(r), NPZ), requests * 4))
     assert together == alone * 4
+
+
+def test_the_number_of_threads() -> None:
+    """BLAS and OpenMP add in another order with another number of threads."""
+    program = """
+import hashlib
+import numpy as np
+from services.perception.perceive import Perception
+from shared.wire import NPZ, encode
+from tests.services.perception.scenes import Stage, spoon
+shot = spoon(Stage().table()).shoot().with_noise(np.random.default_rng(0), 0.0015)
+print(hashlib.sha256(encode(Perception().perceive(shot.request()), NPZ)).hexdigest())
+"""
+    digests = {
+        subprocess.run(
+            [sys.executable, "-c", program],
+            env={**os.environ, "OMP_NUM_THREADS": threads, "OPENBLAS_NUM_THREADS": threads},
+            cwd=PROJECT_ROOT,
+            check=True,
+            capture_output=True,
+            text=True,
+        ).stdout
+        for threads in ("1", "2")
+    }
+    assert len(digests) == 1
 
 
 def test_far_outliers_and_missing_rows_change_nothing(noisy: Shot) -> None:

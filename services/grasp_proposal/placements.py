@@ -1,0 +1,61 @@
+"""Hands with a place: what the search hands on to the closer look."""
+
+from __future__ import annotations
+
+from dataclasses import dataclass
+
+import numpy as np
+from numpy.typing import NDArray
+
+Array = NDArray[np.float64]
+Mask = NDArray[np.bool_]
+
+
+@dataclass(frozen=True)
+class Placements:
+    """Hands with a place, one row each, coordinates in the workspace.
+
+    Attributes
+    ----------
+    rotation : (G, 3, 3) array
+        Columns x, y (closing), z (approach).
+    origin : (G, 3) array
+        The surface point that the hand was tried at.
+    tip : (G,) array
+        How far the finger tips reach past the origin along z.
+    left, right : (G,) arrays
+        Edges of the part along y, from the origin, left < right.
+    front : (G,) array
+        Where the part begins along z.
+    """
+
+    rotation: Array
+    origin: Array
+    tip: Array
+    left: Array
+    right: Array
+    front: Array
+
+    def take(self, chosen: NDArray[np.intp] | Mask) -> Placements:
+        """Return the chosen rows."""
+        return Placements(
+            self.rotation[chosen],
+            self.origin[chosen],
+            self.tip[chosen],
+            self.left[chosen],
+            self.right[chosen],
+            self.front[chosen],
+        )
+
+    def __len__(self) -> int:
+        return len(self.tip)
+
+
+def join(parts: list[Placements]) -> Placements:
+    """Return the rows of all parts, in order."""
+    return Placements(
+        *(
+            np.concatenate([getattr(part, name) for part in parts])
+            for name in ("rotation", "origin", "tip", "left", "right", "front")
+        )
+    )
