@@ -39,14 +39,14 @@ def headline(answer: GraspAnswer) -> str:
 def _primitives(answer: GraspAnswer) -> Table:
     table = Table(title="Parts", title_justify="left", box=box.SIMPLE_HEAD)
     held = answer.region.primitive_ids if answer.region else ()
-    for name in ("part", "shape", "extents (mm)", "residual (mm)", "affordances", ""):
-        table.add_column(name)
+    for name in ("part", "shape", "extents (mm)", "residual", "affordances", ""):
+        table.add_column(name, no_wrap=name != "affordances")
     for each in answer.primitives:
         table.add_row(
             str(each.id),
             f"{each.shape_class} ({each.shape_probability:.2f})",
             " x ".join(f"{1e3 * extent:.0f}" for extent in each.full_extents),
-            f"{each.residual_mm:.1f}",
+            f"{each.residual_mm:.1f} mm",
             ", ".join(each.labels),
             "[green]hold[/green]" if each.id in held else "",
         )

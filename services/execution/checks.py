@@ -41,13 +41,9 @@ def check_request(request: ExecuteRequest) -> None:
             found=request.gripper,
             allowed=list(GRIPPERS),
         )
-    _check_direction("pose.quaternion", request.pose.quaternion)
     _check_near("pose.position", np.array(request.pose.position))
     if request.plane is not None:
-        _check_direction("plane.normal", request.plane.normal)
         _check_near("plane.offset", np.array([request.plane.offset]))
-    elif request.up is not None:
-        _check_direction("up", request.up)
     if request.vertices is not None and request.faces is not None:
         _check_mesh(request.vertices, request.faces)
     else:

@@ -10,7 +10,7 @@ from multiprocessing import Pipe
 
 import orjson
 
-from services.execution.worker import ANSWER, READY
+from services.execution.process import ANSWER, READY
 from shared.errors import DeadlineExceeded, InternalError, StageUnavailable, error_from_envelope
 from shared.schemas.execution import ExecuteRequest, ExecuteResponse
 from shared.wire import JSON, NPZ, decode, encode
@@ -31,7 +31,7 @@ class Simulator:
         self._pipe, theirs = Pipe()
         with theirs:
             self._process = subprocess.Popen(
-                [sys.executable, "-m", "services.execution.worker", str(theirs.fileno())],
+                [sys.executable, "-m", "services.execution.process", str(theirs.fileno())],
                 pass_fds=[theirs.fileno()],
                 stdin=subprocess.DEVNULL,
                 env={

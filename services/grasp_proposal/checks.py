@@ -6,7 +6,6 @@ import numpy as np
 from numpy.typing import NDArray
 
 from shared.errors import EmptyCloud, InvalidInput
-from shared.geometry.rotation import unit
 from shared.schemas.grasp import ProposeRequest
 
 Array = NDArray[np.float64]
@@ -62,22 +61,20 @@ def checked_points(request: ProposeRequest) -> tuple[Array, Mask]:
     return points, request.focus
 
 
-def checked_up(request: ProposeRequest) -> tuple[Array | None, float | None]:
-    """Return the unit up direction and the support plane's offset, where they are known.
+def checked_viewpoint(request: ProposeRequest) -> Array:
+    """Return the sensor's position (3,).
 
     Raises
     ------
     InvalidInput
-        A direction of length zero.
+        Absurdly far away.
     """
-    if request.plane is not None:
-        normal = np.asarray(request.plane.normal, dtype=np.float64)
-        length = float(np.linalg.norm(normal))
-        if not length > 0:
-            raise InvalidInput("the plane's normal must not be zero", field="plane.normal")
-        return normal / length, request.plane.offset / length
-    if request.up is not None:
-        if not np.linalg.norm(request.up) > 0:
-            raise InvalidInput("up must not be zero", field="up")
-        return unit(request.up), None
-    return None, None
+    viewpoint = np.asarray(request.viewpoint, dtype=np.float64)
+    if np.abs(viewpoint).max() > _MAX_COORDINATE:
+        raise InvalidInput(
+            f"viewpoint is {np.abs(viewpoint).max():.3g} m away",
+            field="viewpoint",
+            found=viewpoint.tolist(),
+            allowed=_MAX_COORDINATE,
+        )
+    return viewpoint

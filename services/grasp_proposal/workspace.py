@@ -7,7 +7,7 @@ from dataclasses import dataclass
 import numpy as np
 from numpy.typing import NDArray
 
-from services.grasp_proposal.checks import checked_points, checked_up
+from services.grasp_proposal.checks import checked_points, checked_viewpoint
 from services.grasp_proposal.surface import estimate_normals
 from services.grasp_proposal.thinning import MAX_POINTS, thin
 from shared.geometry.points import principal_axes
@@ -81,13 +81,13 @@ def build_workspace(request: ProposeRequest) -> Workspace:
     Raises
     ------
     EmptyCloud, InvalidInput
-        See `checked_points` and `checked_up`.
+        See `checked_points` and `checked_viewpoint`.
     """
     points, focus = checked_points(request)
     order = np.lexsort((focus, *points.T))
     points, focus = points[order], focus[order]
-    up, offset = checked_up(request)
-    viewpoint = _usable_viewpoint(np.asarray(request.viewpoint, dtype=np.float64), points)
+    up, offset = _up_and_offset(request)
+    viewpoint = _usable_viewpoint(checked_viewpoint(request), points)
     outer_from_work = _scene_frame(points, up, viewpoint)
     work_from_outer = inverse(outer_from_work)
     if up is not None:
@@ -103,12 +103,6 @@ def build_workspace(request: ProposeRequest) -> Workspace:
         kept = np.vstack([kept, points[focus][:1]])
         kept_focus = np.append(kept_focus, True)
     seen_from = None if viewpoint is None else transform_points(work_from_outer, viewpoint[None])[0]
-    obstacles = np.empty((0, 3))
-    if request.obstacle_points is not None and len(request.obstacle_points):
-        obstacles = transform_points(work_from_outer, request.obstacle_points)
-        low, high = points.min(axis=0) - _HAND_REACH, points.max(axis=0) + _HAND_REACH
-        obstacles = obstacles[((obstacles >= low) & (obstacles <= high)).all(axis=1)]
-        obstacles = obstacles[thin(obstacles, _OBSTACLES, MAX_POINTS)]
     coarse = thin(kept, _COARSE, _COARSE_COUNT)
     normals = estimate_normals(kept, kept[coarse], seen_from)
     return Workspace(
@@ -117,12 +111,31 @@ def build_workspace(request: ProposeRequest) -> Workspace:
         in_focus=kept_focus,
         coarse=kept[coarse],
         coarse_normals=normals[coarse],
-        obstacles=obstacles,
+        obstacles=_near_obstacles(request, work_from_outer, points),
         up=up,
         support_offset=offset,
         viewpoint=seen_from,
         outer_from_work=outer_from_work,
     )
+
+
+def _near_obstacles(request: ProposeRequest, work_from_outer: Array, points: Array) -> Array:
+    """Return the obstacles (K, 3) that a hand at the object (N, 3) could meet."""
+    if request.obstacle_points is None or not len(request.obstacle_points):
+        return np.empty((0, 3))
+    obstacles = transform_points(work_from_outer, request.obstacle_points)
+    low, high = points.min(axis=0) - _HAND_REACH, points.max(axis=0) + _HAND_REACH
+    obstacles = obstacles[((obstacles >= low) & (obstacles <= high)).all(axis=1)]
+    obstacles = obstacles[np.lexsort(obstacles.round(9).T)]
+    return np.asarray(obstacles[thin(obstacles, _OBSTACLES, MAX_POINTS)])
+
+
+def _up_and_offset(request: ProposeRequest) -> tuple[Array | None, float | None]:
+    """Return the unit up direction and the support plane's offset, where they are known."""
+    if request.plane is not None:
+        length = float(np.linalg.norm(request.plane.normal))
+        return unit(request.plane.normal), request.plane.offset / length
+    return (None if request.up is None else unit(request.up)), None
 
 
 def _usable_viewpoint(viewpoint: Array, points: Array) -> Array | None:

@@ -6,7 +6,7 @@ from typing import Annotated
 
 from pydantic import Field
 
-from shared.schemas.fields import Vector3
+from shared.schemas.fields import Direction
 from shared.schemas.grasp import Pose
 from shared.schemas.primitive import Primitive
 from shared.schemas.scene import SupportPlane
@@ -37,7 +37,7 @@ class Scene(Message):
     """What the answer rests on."""
 
     plane: SupportPlane | None
-    up: Vector3
+    up: Direction
     object_points: int
     clusters: int
     dropped: dict[str, int]

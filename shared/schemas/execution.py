@@ -8,7 +8,7 @@ import numpy as np
 from numpy.typing import NDArray
 from pydantic import Field, FiniteFloat, model_validator
 
-from shared.schemas.fields import Points, SuperquadricVector, Vector3
+from shared.schemas.fields import Direction, Points, SuperquadricVector
 from shared.schemas.grasp import Pose
 from shared.schemas.route import Route
 from shared.schemas.scene import SupportPlane
@@ -37,7 +37,7 @@ class ExecuteRequest(Message):
     """Mesh vertices in metres, in the same frame as the grasp."""
     faces: Annotated[NDArray[np.int32], ArrayField("int32", ("F", 3))] | None = None
     plane: SupportPlane | None = None
-    up: Vector3 | None = None
+    up: Direction | None = None
     gripper: str = "panda"
     seed: Annotated[int, Field(ge=0, lt=2**32)] = 0
 

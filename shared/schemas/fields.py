@@ -2,14 +2,25 @@
 
 from __future__ import annotations
 
-from typing import Annotated
+import math
+from typing import Annotated, TypeVar
 
 import numpy as np
 from annotated_types import Len
 from numpy.typing import NDArray
-from pydantic import Field, FiniteFloat, StringConstraints
+from pydantic import AfterValidator, Field, FiniteFloat, StringConstraints
 
 from shared.wire import ArrayField
+
+_V = TypeVar("_V", bound=tuple[float, ...])
+
+
+def _points_somewhere(vector: _V) -> _V:
+    length = math.hypot(*vector)
+    if not 1e-6 < length < 1e6:
+        raise ValueError(f"must have a direction, its length is {length:g}")
+    return vector
+
 
 Points = Annotated[NDArray[np.float64], ArrayField("float64", ("N", 3))]
 """Points in metres; a message may hold several sets of different length."""
@@ -20,7 +31,11 @@ GraspRows = Annotated[NDArray[np.float64], ArrayField("float64", ("G", 9))]
 """x y z qx qy qz qw width score, best first."""
 
 Vector3 = tuple[FiniteFloat, FiniteFloat, FiniteFloat]
-Quaternion = tuple[FiniteFloat, FiniteFloat, FiniteFloat, FiniteFloat]
+Direction = Annotated[Vector3, AfterValidator(_points_somewhere)]
+"""A vector that points somewhere."""
+Quaternion = Annotated[
+    tuple[FiniteFloat, FiniteFloat, FiniteFloat, FiniteFloat], AfterValidator(_points_somewhere)
+]
 """[x, y, z, w]"""
 SuperquadricVector = Annotated[tuple[FiniteFloat, ...], Len(12, 12)]
 """[e1, e2, a1, a2, a3, tx, ty, tz, qx, qy, qz, qw]"""

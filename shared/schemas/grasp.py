@@ -8,7 +8,7 @@ import numpy as np
 from numpy.typing import NDArray
 from pydantic import Field, FiniteFloat
 
-from shared.schemas.fields import GraspRows, Labels, Mask, Points, Quaternion, Vector3
+from shared.schemas.fields import Direction, GraspRows, Labels, Mask, Points, Quaternion, Vector3
 from shared.schemas.primitive import Primitive
 from shared.schemas.route import Nothing, Route
 from shared.schemas.scene import SupportPlane
@@ -56,7 +56,7 @@ class ProposeRequest(Message):
     points: Points
     obstacle_points: Points | None = None
     plane: SupportPlane | None = None
-    up: Vector3 | None = None
+    up: Direction | None = None
     viewpoint: Vector3 = (0.0, 0.0, 0.0)
     focus: Mask | None = None
     """Sample only at these points; the whole object still counts for collisions."""

@@ -6,7 +6,7 @@ from typing import Annotated, Literal
 
 from pydantic import Field
 
-from shared.schemas.fields import Points, SuperquadricVector, Vector3
+from shared.schemas.fields import Direction, Points, SuperquadricVector, Vector3
 from shared.schemas.route import Route
 from shared.schemas.scene import SupportPlane
 from shared.superquadric import Superquadric
@@ -41,7 +41,7 @@ class RecoverRequest(Message):
     points: Points
     viewpoint: Vector3 = (0.0, 0.0, 0.0)
     plane: SupportPlane | None = None
-    up: Vector3 | None = None
+    up: Direction | None = None
     preset: Preset | None = None
     """Parameters of Table A.1; without it, the service's own setting."""
     seed: Annotated[int, Field(ge=0, lt=2**32)] = 0

@@ -8,7 +8,7 @@ import numpy as np
 from numpy.typing import NDArray
 from pydantic import Field, FiniteFloat, model_validator
 
-from shared.schemas.fields import Indices, Points, Vector3
+from shared.schemas.fields import Direction, Indices, Points, Vector3
 from shared.schemas.route import Route
 from shared.wire import ArrayField, Message
 
@@ -49,7 +49,7 @@ class View(Message):
 class SupportPlane(Message):
     """The surface that the object stands on: `normal . p + offset = 0`."""
 
-    normal: Vector3
+    normal: Direction
     """Unit vector towards the side where the objects are."""
     offset: FiniteFloat
     inliers: int
@@ -76,7 +76,7 @@ class PerceiveResponse(Message):
     """Other things near the object that a hand could hit, thinned out; not the support plane."""
     plane: SupportPlane | None
     """None where no support surface was seen, as with `input = object`."""
-    up: Vector3
+    up: Direction
     """Unit vector against gravity: the plane's normal; without a plane, best guess."""
     input_points: int
     dropped: dict[str, int]

@@ -15,7 +15,7 @@ from collections.abc import Mapping
 from typing import Any
 
 import numpy as np
-from numpy.typing import NDArray
+from numpy.typing import ArrayLike, NDArray
 
 from shared.errors import MalformedRequest, PayloadTooLarge
 
@@ -103,7 +103,7 @@ def _read_array(name: str, content: bytes) -> NDArray[Any]:
     return flat.reshape(shape, order="F" if fortran_order else "C")
 
 
-def write_npz(arrays: Mapping[str, NDArray[Any]], *, compress: bool = False) -> bytes:
+def write_npz(arrays: Mapping[str, ArrayLike], *, compress: bool = False) -> bytes:
     """Return an npz archive of `arrays`; same arrays, same bytes."""
     stream = io.BytesIO()
     method = zipfile.ZIP_DEFLATED if compress else zipfile.ZIP_STORED

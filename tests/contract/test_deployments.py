@@ -5,7 +5,6 @@ from __future__ import annotations
 import contextlib
 import os
 import signal
-import socket
 import subprocess
 import sys
 import time
@@ -19,7 +18,7 @@ import pytest
 from services.gateway.settings import STAGES
 from services.wiring import create_app
 from tests.support.samples import sample_path
-from tests.support.serving import in_process
+from tests.support.serving import free_ports, in_process
 
 READY_TIMEOUT_S = 120.0
 QUESTIONS = [
@@ -28,14 +27,6 @@ QUESTIONS = [
     {"task": "handover", "reasoning": "v2"},
     {"task": "hammering", "reasoning": "v2"},
 ]
-
-
-def free_ports(count: int) -> list[int]:
-    with contextlib.ExitStack() as stack:
-        held = [socket.create_server(("127.0.0.1", 0)) for _ in range(count)]
-        for each in held:
-            stack.enter_context(each)
-        return [each.getsockname()[1] for each in held]
 
 
 @pytest.fixture(scope="module")

@@ -7,7 +7,7 @@ import orjson
 import pytest
 
 from shared.errors import InvalidInput, MalformedRequest, UnsupportedMediaType
-from shared.schemas.grasp import SelectRequest
+from shared.schemas.grasp import Pose, SelectRequest
 from shared.schemas.scene import PerceiveRequest, PerceiveResponse, SupportPlane
 from shared.wire import JSON, NPZ, decode, encode
 
@@ -102,3 +102,11 @@ def test_a_mask_takes_booleans_only() -> None:
     with pytest.raises(ValueError, match="allowed is bool"):
         SelectRequest(**fields, point_region=np.array([1, 0]))
     assert len(SelectRequest(**fields, point_region=[True, False]).point_region) == 2
+
+
+@pytest.mark.parametrize("length", [0.0, 1e-9, 1e9])
+def test_a_direction_points_somewhere(length: float) -> None:
+    with pytest.raises(ValueError, match="must have a direction"):
+        SupportPlane(normal=(0, 0, length), offset=0, inliers=1, residual_mm=1)
+    with pytest.raises(ValueError, match="must have a direction"):
+        Pose(position=(0, 0, 0), quaternion=(0, 0, 0, length))

@@ -15,7 +15,7 @@ from fastapi import FastAPI
 from shared.service.local import LocalClient as Client
 from shared.service.local import in_process
 
-__all__ = ["Client", "in_process", "over_socket", "serving"]
+__all__ = ["Client", "free_ports", "in_process", "over_socket", "serving"]
 
 READY_TIMEOUT_S = 120.0
 
@@ -45,3 +45,12 @@ def serving(app: FastAPI) -> Iterator[str]:
         server.should_exit = True
         thread.join(timeout=10)
         listener.close()
+
+
+def free_ports(count: int) -> list[int]:
+    """Return ports of the loopback that nothing listens on now."""
+    with contextlib.ExitStack() as stack:
+        held = [socket.create_server(("127.0.0.1", 0)) for _ in range(count)]
+        for each in held:
+            stack.enter_context(each)
+        return [each.getsockname()[1] for each in held]

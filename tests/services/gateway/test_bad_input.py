@@ -6,7 +6,6 @@ import io
 import json
 import threading
 import zipfile
-from collections.abc import Iterator
 
 import httpx
 import numpy as np
@@ -21,17 +20,8 @@ from tests.support.serving import Client, in_process
 NPZ = "application/x-npz"
 
 
-@pytest.fixture(scope="module")
-def client(tmp_path_factory: pytest.TempPathFactory) -> Iterator[Client]:
-    with pytest.MonkeyPatch.context() as environment:
-        knowledge = str(tmp_path_factory.mktemp("knowledge"))
-        environment.setenv("SPARGE_REASONING_KNOWLEDGE_DIR", knowledge)
-        with in_process(create_app()) as served:
-            yield served
-
-
-def grasp(client: Client, body: bytes, media_type: str = NPZ, **query: str) -> httpx.Response:
-    return client.request(
+def grasp(backend: Client, body: bytes, media_type: str = NPZ, **query: str) -> httpx.Response:
+    return backend.request(
         "POST",
         "/grasp",
         params={"task": "cooking", **query},
@@ -109,51 +99,51 @@ BAD = {
 
 
 @pytest.mark.parametrize("name", BAD)
-def test_bad_input_is_told_and_nothing_is_lost(client: Client, name: str) -> None:
+def test_bad_input_is_told_and_nothing_is_lost(backend: Client, name: str) -> None:
     body, query, status, code = BAD[name]
     threads = threading.active_count()
-    response = grasp(client, body, **query)
+    response = grasp(backend, body, **query)
     assert (response.status_code, response.json()["error"]["code"]) == (status, code), response.text
     assert "Traceback" not in response.text
     assert threading.active_count() <= threads + 2, "only the pool's idle workers may be new"
-    assert client.request("GET", "/health/ready").status_code == 200
+    assert backend.request("GET", "/health/ready").status_code == 200
 
 
-def test_it_still_answers_after_all_that(client: Client) -> None:
+def test_it_still_answers_after_all_that(backend: Client) -> None:
     for name in BAD:
         body, query, _, _ = BAD[name]
-        assert grasp(client, body, **query).status_code >= 400
-    assert grasp(client, sample()).status_code == 200
+        assert grasp(backend, body, **query).status_code >= 400
+    assert grasp(backend, sample()).status_code == 200
 
 
-def test_nan_in_json_is_malformed(client: Client) -> None:
+def test_nan_in_json_is_malformed(backend: Client) -> None:
     body = json.dumps({"points": [[float("nan"), 0, 1]] * 20}).encode()
-    response = grasp(client, body, "application/json")
+    response = grasp(backend, body, "application/json")
     assert (response.status_code, response.json()["error"]["code"]) == (400, "malformed")
 
 
-def test_some_invalid_points_are_dropped_and_counted(client: Client) -> None:
+def test_some_invalid_points_are_dropped_and_counted(backend: Client) -> None:
     rows = CLOUD.copy()
     rows[::10] = np.nan
     rows[5] = np.inf
-    response = grasp(client, points(rows), input="object")
+    response = grasp(backend, points(rows), input="object")
     assert response.status_code == 200, response.text
     assert response.json()["scene"]["dropped"]["invalid"] == 51
 
 
-def test_an_unknown_task_lists_the_known_ones(client: Client) -> None:
-    error = grasp(client, sample(), task="juggling").json()["error"]
+def test_an_unknown_task_lists_the_known_ones(backend: Client) -> None:
+    error = grasp(backend, sample(), task="juggling").json()["error"]
     assert {"cooking", "pouring", "handover"} <= set(error["details"]["known"])
     assert "pouring" in error["message"]
 
 
-def test_millimetres_are_named_in_the_message(client: Client) -> None:
-    message = grasp(client, points(CLOUD * 1000), input="object").json()["error"]["message"]
+def test_millimetres_are_named_in_the_message(backend: Client) -> None:
+    message = grasp(backend, points(CLOUD * 1000), input="object").json()["error"]["message"]
     assert "millimetres" in message
 
 
-def test_a_form_without_a_file(client: Client) -> None:
-    response = client.request("POST", "/grasp", data={"task": "cooking"}, files={"other": b"x"})
+def test_a_form_without_a_file(backend: Client) -> None:
+    response = backend.request("POST", "/grasp", data={"task": "cooking"}, files={"other": b"x"})
     assert response.status_code == 422
     assert "file" in response.json()["error"]["message"]
 

@@ -1,6 +1,6 @@
 """The simulation process: reads requests from a pipe, answers each, ends with the pipe.
 
-Run as `python -m services.execution.worker FD`. Frames are bodies of the
+Run as `python -m services.execution.process FD`. Frames are bodies of the
 project's own messages, so nothing is pickled. Bullet and V-HACD print to the
 standard output from C; this process discards it.
 """

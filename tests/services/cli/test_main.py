@@ -1,0 +1,116 @@
+"""The `sparge` command as a person types it."""
+
+from __future__ import annotations
+
+import json
+import os
+import signal
+import subprocess
+import sys
+import time
+from pathlib import Path
+
+import httpx
+import pytest
+
+from tests.support.samples import sample_path
+from tests.support.serving import free_ports
+
+SPARGE = [sys.executable, "-c", "from services.cli import main; main()"]
+
+
+@pytest.fixture
+def environment(tmp_path: Path) -> dict[str, str]:
+    return {
+        **os.environ,
+        "SPARGE_REASONING_KNOWLEDGE_DIR": str(tmp_path / "knowledge"),
+        "COLUMNS": "100",
+    }
+
+
+def sparge(environment: dict[str, str], *words: str) -> subprocess.CompletedProcess[str]:
+    return subprocess.run(
+        [*SPARGE, *words],
+        env=environment,
+        capture_output=True,
+        text=True,
+        timeout=120,
+        cwd=Path(__file__).parents[3],
+    )
+
+
+def test_grasp_prints_the_answer_and_draws_it(environment: dict[str, str], tmp_path: Path) -> None:
+    picture = tmp_path / "made" / "grasp.png"
+    done = sparge(
+        environment,
+        *("grasp", str(sample_path("bottle")), "--task", "Pouring", "--picture", str(picture)),
+    )
+    assert done.returncode == 0, done.stderr
+    for word in ("pouring (v2): hold part", "Parts", "Grasps", "Why", "thesis/version2", "Time"):
+        assert word in done.stdout
+    assert picture.read_bytes().startswith(b"\x89PNG")
+
+
+def test_grasp_as_json(environment: dict[str, str]) -> None:
+    done = sparge(
+        environment,
+        *("grasp", str(sample_path("bottle")), "--task", "handover", "--json"),
+        *("--max-grasps", "2"),
+    )
+    answer = json.loads(done.stdout)
+    assert answer["task"] == "handover"
+    assert len(answer["grasps"]) <= 2
+
+
+def test_an_error_is_one_line_and_status_1(environment: dict[str, str]) -> None:
+    done = sparge(environment, "grasp", str(sample_path("bottle")), "--task", "juggling")
+    assert done.returncode == 1
+    assert "unknown_task" in done.stderr
+    assert "pouring" in done.stderr
+    assert "Traceback" not in done.stderr
+
+
+def test_a_file_that_is_no_cloud(environment: dict[str, str], tmp_path: Path) -> None:
+    letter = tmp_path / "letter.txt"
+    letter.write_text("dear robot")
+    done = sparge(environment, "grasp", str(letter), "--task", "pouring")
+    assert done.returncode == 1
+    assert "unsupported_media_type" in done.stderr
+
+
+def test_a_backend_that_is_not_there(environment: dict[str, str]) -> None:
+    (port,) = free_ports(1)
+    done = sparge(
+        environment,
+        *("grasp", str(sample_path("bottle")), "--task", "pouring"),
+        *("--url", f"http://127.0.0.1:{port}"),
+    )
+    assert done.returncode == 1
+    assert "stage_unavailable" in done.stderr
+
+
+def test_serve_answers_and_stops_on_sigterm(environment: dict[str, str]) -> None:
+    (port,) = free_ports(1)
+    url = f"http://127.0.0.1:{port}"
+    server = subprocess.Popen(
+        [*SPARGE, "serve", "--port", str(port), "--log-level", "warning"],
+        env=environment,
+        cwd=Path(__file__).parents[3],
+    )
+    try:
+        deadline = time.monotonic() + 60
+        while time.monotonic() < deadline:
+            try:
+                if httpx.get(f"{url}/health/ready").status_code == 200:
+                    break
+            except httpx.TransportError:
+                assert server.poll() is None
+            time.sleep(0.1)
+        done = sparge(
+            environment, "grasp", str(sample_path("bottle")), "--task", "pouring", "--url", url
+        )
+        assert done.returncode == 0, done.stderr
+        assert "hold part" in done.stdout
+    finally:
+        server.send_signal(signal.SIGTERM)
+        assert server.wait(timeout=10) in (0, -signal.SIGTERM)
