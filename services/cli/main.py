@@ -7,6 +7,7 @@ from enum import StrEnum
 from pathlib import Path
 from typing import Annotated
 
+import orjson
 import typer
 from rich.console import Console
 
@@ -75,23 +76,24 @@ def grasp(
     console = Console(stderr=True)
     question = Question(
         file=file,
-        fields={
-            "task": task,
+        task=task,
+        parameters={
             "reasoning": reasoning.value,
             "input": kind.value,
             "gripper": gripper,
-            "max_grasps": str(max_grasps),
-            "seed": str(seed),
-            "viewpoint": viewpoint,
-            **({"intrinsics": intrinsics} if intrinsics is not None else {}),
-            **({"depth_scale": str(depth_scale)} if depth_scale is not None else {}),
+            "max_grasps": max_grasps,
+            "seed": seed,
+            "viewpoint": _json("viewpoint", viewpoint),
+            "intrinsics": _json("intrinsics", intrinsics),
+            "depth_scale": depth_scale,
         },
     )
     answered = ask(question, url, console)
+    answer = answered.result.answer
     if as_json:
-        print(answered.answer.model_dump_json(indent=2))
+        print(answer.model_dump_json(indent=2))
     else:
-        show(answered.answer, Console())
+        show(answer, Console())
     if picture is not None:
         from services.cli.picture import draw_answer
 
@@ -101,10 +103,10 @@ def grasp(
             points,
             assigned,
             region,
-            answered.answer.primitives,
-            answered.grasps,
-            answered.answer.scene.up,
-            f"{file.stem}: {headline(answered.answer)}",
+            answer.primitives,
+            answered.result.grasps,
+            answer.scene.up,
+            f"{file.stem}: {headline(answer)}",
         )
         console.print(f"picture: {picture}", highlight=False)
 
@@ -126,3 +128,13 @@ def serve(
         log_level=log_level,
         timeout_graceful_shutdown=5,
     )
+
+
+def _json(name: str, text: str | None) -> object:
+    """Return what an option written as JSON says."""
+    try:
+        return None if text is None else orjson.loads(text)
+    except orjson.JSONDecodeError:
+        raise typer.BadParameter(
+            f"--{name} must be JSON, as in [0, 0, 0]; found {text!r}"
+        ) from None

@@ -8,7 +8,7 @@ timeouts, so the deadline is kept here.
 from __future__ import annotations
 
 import asyncio
-from typing import TypeVar
+from typing import Any, TypeVar
 
 import httpx
 import orjson
@@ -29,7 +29,7 @@ from shared.wire import NPZ, Message, decode, encode
 In = TypeVar("In", bound=Message)
 Out = TypeVar("Out", bound=Message)
 
-_MAX_ANSWER_BYTES = 512 * 2**20
+MAX_ANSWER_BYTES = 512 * 2**20
 
 
 class StageClient:
@@ -59,35 +59,16 @@ class StageClient:
         DeadlineExceeded
             No answer within `timeout_s` seconds.
         """
-        path = route.path
-        for name in type(request).model_fields:
-            path = path.replace(f"{{{name}}}", str(getattr(request, name)))
-        posts = route.method == "POST"
         try:
             async with asyncio.timeout(max(timeout_s, 0.0)):
-                response = await self._http.request(
-                    route.method,
-                    path,
-                    content=encode(request, NPZ) if posts else None,
-                    headers={
-                        "Accept": NPZ,
-                        REQUEST_ID_HEADER: request_id.get(),
-                        **({"Content-Type": NPZ} if posts else {}),
-                    },
-                )
+                response = await self._http.request(**compose(route, request))
         except (TimeoutError, httpx.TimeoutException):
             raise DeadlineExceeded(
                 f"the stage {self.service} did not answer in time", stage=self.service
             ) from None
         except httpx.TransportError as error:
-            raise self._unavailable(f"cannot be reached ({type(error).__name__})") from None
-        if response.status_code != 200:
-            raise self._error(response)
-        try:
-            media_type = response.headers.get("content-type", "")
-            return decode(route.response, response.content, media_type, _MAX_ANSWER_BYTES)
-        except SpargeError as error:
-            raise self._unavailable(f"answered nonsense: {error.message}") from None
+            raise unavailable(self.service, f"cannot be reached ({type(error).__name__})") from None
+        return read(self.service, route, response)
 
     async def health(self, timeout_s: float) -> Health:
         """Ask `/health/ready`; a service that does not answer has status `failed`."""
@@ -99,17 +80,49 @@ class StageClient:
             message = str(error) or type(error).__name__
             return Health(status="failed", service=self.service, details={"error": message})
 
-    def _error(self, response: httpx.Response) -> SpargeError:
-        try:
-            error = error_from_envelope(response.status_code, orjson.loads(response.content))
-        except orjson.JSONDecodeError:
-            error = None
-        if error is None or isinstance(error, NoSuchPath | MethodNotAllowed):
-            return self._unavailable(f"answered {response.status_code}; is its URL right?")
-        if error.status >= 500 and not isinstance(error, StageUnavailable | DeadlineExceeded):
-            return self._unavailable(f"failed: {error.message}")
-        error.details.setdefault("stage", self.service)
-        return error
 
-    def _unavailable(self, why: str) -> StageUnavailable:
-        return StageUnavailable(f"the stage {self.service} {why}", stage=self.service)
+def compose(route: Route[In, Out], request: In) -> dict[str, Any]:
+    """Return the arguments of an httpx client's `request` that ask `route`."""
+    path = route.path
+    for name in type(request).model_fields:
+        path = path.replace(f"{{{name}}}", str(getattr(request, name)))
+    headers = {"Accept": NPZ, REQUEST_ID_HEADER: request_id.get()}
+    if route.method != "POST":
+        return {"method": route.method, "url": path, "headers": headers}
+    return {
+        "method": route.method,
+        "url": path,
+        "headers": {**headers, "Content-Type": NPZ},
+        "content": encode(request, NPZ),
+    }
+
+
+def read(service: str, route: Route[In, Out], response: httpx.Response) -> Out:
+    """Return the message of an answer, or raise the error that it is."""
+    check(service, response)
+    try:
+        media_type = response.headers.get("content-type", "")
+        return decode(route.response, response.content, media_type, MAX_ANSWER_BYTES)
+    except SpargeError as error:
+        raise unavailable(service, f"answered nonsense: {error.message}") from None
+
+
+def check(service: str, response: httpx.Response) -> None:
+    """Raise the error that an answer is, unless it is none."""
+    if response.status_code == 200:
+        return
+    try:
+        error = error_from_envelope(response.status_code, orjson.loads(response.content))
+    except orjson.JSONDecodeError:
+        error = None
+    if error is None or isinstance(error, NoSuchPath | MethodNotAllowed):
+        raise unavailable(service, f"answered {response.status_code}; is its URL right?")
+    if error.status >= 500 and not isinstance(error, StageUnavailable | DeadlineExceeded):
+        raise unavailable(service, f"failed: {error.message}")
+    error.details.setdefault("stage", service)
+    raise error
+
+
+def unavailable(service: str, why: str) -> StageUnavailable:
+    """Return the error of a service that cannot answer."""
+    return StageUnavailable(f"the stage {service} {why}", stage=service)
