@@ -86,7 +86,12 @@ def create_app(
             for name, health in zip(stages, all_health, strict=True)
             if health.status != "ready"
         }
-        return Health(status="starting" if waiting else "ready", service="gateway", details=waiting)
+        failed = any(health.status == "failed" for health in all_health)
+        return Health(
+            status="failed" if failed else "starting" if waiting else "ready",
+            service="gateway",
+            details=waiting,
+        )
 
     app = create_base(
         "gateway",

@@ -5,6 +5,7 @@ from __future__ import annotations
 import io
 import json
 import threading
+import time
 import zipfile
 
 import httpx
@@ -13,9 +14,10 @@ import pytest
 
 from services.gateway.settings import GatewaySettings
 from services.wiring import create_app
+from shared.errors import StageUnavailable
 from shared.wire.npz import write_npz
 from tests.support.samples import sample_path
-from tests.support.serving import Client, in_process
+from tests.support.serving import Client, in_process, serving
 
 NPZ = "application/x-npz"
 
@@ -151,7 +153,27 @@ def test_a_form_without_a_file(backend: Client) -> None:
 def test_a_missing_stage_is_named() -> None:
     settings = GatewaySettings(primitive_recovery_url="http://127.0.0.1:9")
     with (
-        pytest.raises(Exception, match="primitive_recovery"),
-        in_process(create_app(settings), ready_timeout_s=2.0),
+        pytest.raises(StageUnavailable, match="primitive_recovery: All connection attempts failed"),
+        in_process(create_app(settings)),
     ):
         pass
+
+
+def test_a_request_to_a_missing_stage_names_it() -> None:
+    settings = GatewaySettings(primitive_recovery_url="http://127.0.0.1:9")
+    with serving(create_app(settings)) as url, httpx.Client(base_url=url, timeout=30) as client:
+        for _ in range(600):
+            response = client.post(
+                "/grasp",
+                params={"task": "cooking"},
+                content=sample(),
+                headers={"Content-Type": NPZ},
+            )
+            error = response.json()["error"]
+            assert (response.status_code, error["code"]) == (503, "stage_unavailable")
+            assert response.headers["retry-after"]
+            if error["details"]["stage"] == "primitive_recovery":
+                break
+            time.sleep(0.1)  # the other stages are still warming up
+        assert "primitive_recovery cannot be reached" in error["message"]
+        assert client.get("/tasks").status_code == 200, "what does not need it works"

@@ -4,6 +4,7 @@ from __future__ import annotations
 
 import io
 import json
+from concurrent.futures import ThreadPoolExecutor
 from typing import Any
 
 import numpy as np
@@ -197,3 +198,11 @@ def test_an_answer_can_be_executed(backend: Client) -> None:
     assert done.status_code == 200, done.text
     assert done.json()["message"]
     assert done.json()["success"] is (done.json()["outcome"] == "lifted")
+
+
+def test_requests_side_by_side_do_not_mix(backend: Client) -> None:
+    questions = [{"task": task, "seed": seed} for task in ("pouring", "handover") for seed in "12"]
+    alone = [timeless(answer(backend, **question)) for question in questions]
+    with ThreadPoolExecutor(8) as pool:
+        together = list(pool.map(lambda question: answer(backend, **question), questions * 3))
+    assert [timeless(each) for each in together] == alone * 3
