@@ -202,7 +202,7 @@ def test_an_answer_can_be_executed(backend: Client) -> None:
 
 def test_requests_side_by_side_do_not_mix(backend: Client) -> None:
     questions = [{"task": task, "seed": seed} for task in ("pouring", "handover") for seed in "12"]
-    alone = [timeless(answer(backend, **question)) for question in questions]
+    alone = [timeless(answer(backend, BOTTLE, **each)) for each in questions]
     with ThreadPoolExecutor(8) as pool:
-        together = list(pool.map(lambda question: answer(backend, **question), questions * 3))
+        together = list(pool.map(lambda each: answer(backend, BOTTLE, **each), questions * 3))
     assert [timeless(each) for each in together] == alone * 3
