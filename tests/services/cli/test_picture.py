@@ -11,7 +11,8 @@ from matplotlib.colors import to_rgb
 from numpy.typing import NDArray
 from PIL import Image
 
-from services.cli.picture import GRIPPER, PART_COLOURS, REGION, draw_answer
+from services.cli.picture import draw_answer
+from services.cli.picture.style import GRIPPER, PART_COLOURS, REGION
 from shared.schemas.primitive import Primitive
 from shared.superquadric import Superquadric, surface_mesh
 
