@@ -53,4 +53,5 @@ def frame_from_z(z_axis: ArrayLike, x_hint: ArrayLike | None = None) -> Matrix:
         flat = hint - z * (hint @ z)
         if np.linalg.norm(flat) > 1e-9:
             x = unit(flat)
+            x = unit(x - z * (x @ z))  # again: the first loses digits when nearly parallel
     return np.column_stack([x, np.cross(z, x), z])
