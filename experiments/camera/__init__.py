@@ -2,7 +2,7 @@
 
 from experiments.camera.noise import StereoNoise
 from experiments.camera.pinhole import D435, PinholeCamera, look_at
-from experiments.camera.render import Rendering, label_image, render
+from experiments.camera.render import Rendering, label_image, region_masks, render
 from experiments.camera.scene import HeadCamera, Table, place_on
 
 __all__ = [
@@ -15,5 +15,6 @@ __all__ = [
     "label_image",
     "look_at",
     "place_on",
+    "region_masks",
     "render",
 ]

@@ -2,6 +2,7 @@
 
 from __future__ import annotations
 
+from collections.abc import Sequence
 from dataclasses import dataclass
 
 import numpy as np
@@ -38,7 +39,8 @@ class Rendering:
     part : (H, W) int16 array
         Index of the object's part at each pixel, -1 elsewhere.
     on_table : (H, W) bool array
-        Where the table is seen.
+        Where the table is seen. Where other things are seen there is a depth,
+        but neither a part nor the table.
     """
 
     depth: Array
@@ -52,9 +54,30 @@ def render(
     table: Table,
     camera: PinholeCamera,
     world_from_camera: Array,
+    others: Sequence[tuple[CatalogueObject, Array]] = (),
 ) -> Rendering:
-    """Return what the camera sees of an object on a table."""
-    scene = o3d.t.geometry.RaycastingScene()
+    """Return what the camera sees of an object on a table.
+
+    Parameters
+    ----------
+    thing : CatalogueObject
+        The object that parts and labels refer to.
+    world_from_object, world_from_camera : (4, 4) array
+        Poses in the world's frame.
+    table : Table
+        The table in that frame.
+    camera : PinholeCamera
+        The camera.
+    others : sequence of (CatalogueObject, (4, 4) array), optional
+        What else stands about, each with its world_from_object. It is seen and
+        it hides, but it is no part of `thing`.
+
+    Notes
+    -----
+    One thread, so that the same scene gives the same bytes everywhere; views
+    are made in parallel by processes (experiments.dataset).
+    """
+    scene = o3d.t.geometry.RaycastingScene(nthreads=1)
     low, high = table.corners
     corners = np.array([[x, y, z] for z in (0, 1) for y in (0, 1) for x in (0, 1)])
     camera_from_world = inverse(world_from_camera)
@@ -65,9 +88,15 @@ def render(
         for mesh in part.meshes:
             _add(scene, transform_points(camera_from_object, mesh.vertices), mesh.faces)
             part_of_geometry.append(index)
+    for other, world_from_other in others:
+        camera_from_other = camera_from_world @ world_from_other
+        for part in other.parts:
+            for mesh in part.meshes:
+                _add(scene, transform_points(camera_from_other, mesh.vertices), mesh.faces)
+                part_of_geometry.append(-1)
     directions = camera.rays()
     rays = np.concatenate([np.zeros_like(directions), directions], axis=-1)
-    hit = scene.cast_rays(o3d.core.Tensor.from_numpy(rays.astype(np.float32)))
+    hit = scene.cast_rays(o3d.core.Tensor.from_numpy(rays.astype(np.float32)), nthreads=1)
     distance = hit["t_hit"].numpy().astype(np.float64)
     seen = np.isfinite(distance)
     geometry = np.where(seen, hit["geometry_ids"].numpy(), 0).astype(np.int64)
@@ -77,6 +106,19 @@ def render(
         part=part_index.astype(np.int16),
         on_table=seen & (geometry == 0),
     )
+
+
+def region_masks(thing: CatalogueObject, rendering: Rendering) -> NDArray[np.bool_]:
+    """Return (T, H, W) where the region of each of the T tasks is seen.
+
+    A region is the union of its parts, however many pieces it shows; a part
+    that serves several tasks is in the region of each.
+    """
+    names = [part.name for part in thing.parts]
+    in_region = np.zeros((len(thing.tasks), len(names) + 1), dtype=bool)  # last: part -1
+    for index, task in enumerate(thing.tasks):
+        in_region[index, [names.index(name) for name in thing.regions[task]]] = True
+    return np.asarray(in_region[:, rendering.part])
 
 
 def label_image(thing: CatalogueObject, rendering: Rendering) -> NDArray[np.uint8]:

@@ -4,8 +4,14 @@ from __future__ import annotations
 
 import numpy as np
 
-from experiments.catalogue.model import WATER, CatalogueObject, Part
+from experiments.catalogue.draws import around, between
+from experiments.catalogue.forms import limb
+from experiments.catalogue.model import WATER, CatalogueObject, Mesh, Part
 from experiments.catalogue.shapes import revolve
+
+REGIONS = {"pouring": ("body", "shoulder"), "handover": ("neck", "cap")}
+FULL_GLASS = 1250.0
+"""Density of a wine bottle with its wine, kg/m3."""
 
 
 def bottle(
@@ -68,9 +74,157 @@ def bottle(
     )
     return CatalogueObject(
         "bottle",
-        "half-litre bottle with a screw cap",
+        "bottle with a screw cap",
         parts,
-        {"pouring": ("body", "shoulder"), "handover": ("neck", "cap")},
+        REGIONS,
+    )
+
+
+def wine_bottle(
+    *,
+    diameter: float = 0.075,
+    body_height: float = 0.190,
+    shoulder_height: float = 0.045,
+    neck_diameter: float = 0.029,
+    neck_height: float = 0.045,
+    cap_height: float = 0.040,
+) -> CatalogueObject:
+    """Return a full wine bottle with a long neck under a foil capsule, on z = 0; metres."""
+    body, neck = diameter / 2, neck_diameter / 2
+    top = body_height + shoulder_height
+    turn = np.linspace(0, np.pi, 14)
+    shoulder = np.column_stack(
+        [
+            neck + (body - neck) * ((1 + np.cos(turn)) / 2) ** 0.8,
+            body_height + shoulder_height * turn / np.pi,
+        ]
+    )
+    rim = top + neck_height + cap_height
+    parts = (
+        Part(
+            "body",
+            (
+                revolve(
+                    [
+                        (0, 0.012),
+                        (0.45 * body, 0.006),
+                        (0.8 * body, 0.0),
+                        (0.96 * body, 0.002),
+                        (body, 0.008),
+                        (body, body_height),
+                        (0, body_height),
+                    ]
+                ),
+            ),
+            FULL_GLASS,
+        ),
+        Part("shoulder", (revolve([(0, body_height), *shoulder, (0, top)]),), FULL_GLASS),
+        Part("neck", (revolve(_cylinder(neck, top - 0.001, rim - cap_height)),), FULL_GLASS),
+        Part(
+            "cap",
+            (
+                revolve(_cylinder(neck + 0.0006, rim - cap_height - 0.001, rim)),
+                revolve(_cylinder(neck + 0.0022, rim - 0.013, rim - 0.006)),
+            ),
+            FULL_GLASS,
+        ),
+    )
+    return CatalogueObject("wine_bottle", "wine bottle", parts, REGIONS)
+
+
+def squeeze_bottle(
+    *,
+    width: float = 0.092,
+    depth: float = 0.058,
+    body_height: float = 0.150,
+    shoulder_height: float = 0.030,
+    neck_diameter: float = 0.030,
+    cap_height: float = 0.032,
+) -> CatalogueObject:
+    """Return a full squeeze bottle, oval, with a tapered spout, on z = 0; metres."""
+    top = body_height + shoulder_height
+    waist, neck = 0.93, neck_diameter
+
+    def stack(low: float, high: float, profile: list[tuple[float, float, float]]) -> Mesh:
+        return limb([(0, 0, low), (0, 0, high)], profile, (1, 0, 0), exponent=2.3, segments=48)
+
+    body = limb(
+        [(0, 0, 0), (0, 0, body_height)],
+        [
+            (0.0, 0.96 * width, 0.95 * depth),
+            (0.15, width, depth),
+            (0.45, waist * width, 0.95 * depth),
+            (0.85, 0.98 * width, 0.98 * depth),
+            (1.0, 0.92 * width, 0.95 * depth),
+        ],
+        (1, 0, 0),
+        exponent=2.3,
+        round_start=0.007,
+        segments=48,
+    )
+    shoulder = stack(
+        body_height,
+        top,
+        [
+            (0.0, 0.92 * width, 0.95 * depth),
+            (0.35, 0.78 * width, 0.86 * depth),
+            (0.8, 1.2 * neck, 1.15 * neck),
+            (1.0, neck, neck),
+        ],
+    )
+    lip = top + 0.010
+    spout = revolve(
+        [
+            (0, lip - 0.002),
+            (0.66 * neck, lip - 0.002),
+            (0.68 * neck, lip),
+            (0.66 * neck, lip + 0.35 * cap_height),
+            (0.46 * neck, lip + 0.45 * cap_height),
+            (0.22 * neck, lip + 0.92 * cap_height),
+            (0.18 * neck, lip + 0.98 * cap_height),
+            (0, lip + cap_height),
+        ]
+    )
+    parts = (
+        Part("body", (body,), WATER),
+        Part("shoulder", (shoulder,), WATER),
+        Part("neck", (revolve(_cylinder(neck / 2, top - 0.001, lip)),), WATER),
+        Part("cap", (spout,), WATER),
+    )
+    return CatalogueObject("squeeze_bottle", "oval squeeze bottle", parts, REGIONS)
+
+
+def any_bottle(rng: np.random.Generator) -> CatalogueObject:
+    """Return a random bottle: a wide one is tall, its neck grows more slowly."""
+    kind = rng.integers(3)
+    size = between(rng, 0.80, 1.16)
+    if kind == 0:
+        return bottle(
+            diameter=around(rng, 0.066 * size, 0.05),
+            body_height=around(rng, 0.145 * size, 0.10),
+            shoulder_height=around(rng, 0.038 * size, 0.15),
+            neck_diameter=around(rng, 0.028 * size**0.4, 0.05),
+            neck_height=around(rng, 0.022, 0.15),
+            cap_height=around(rng, 0.020, 0.12),
+        )
+    if kind == 1:
+        size = min(size, 1.05)
+        return wine_bottle(
+            diameter=around(rng, 0.073 * size, 0.05),
+            body_height=around(rng, 0.180 * size, 0.08),
+            shoulder_height=around(rng, 0.045 * size, 0.2),
+            neck_diameter=around(rng, 0.029, 0.04),
+            neck_height=around(rng, 0.042 * size, 0.15),
+            cap_height=around(rng, 0.040, 0.15),
+        )
+    width = around(rng, 0.088 * size, 0.08)
+    return squeeze_bottle(
+        width=width,
+        depth=width * between(rng, 0.58, 0.92),
+        body_height=around(rng, 0.145 * size, 0.10),
+        shoulder_height=around(rng, 0.030 * size, 0.15),
+        neck_diameter=around(rng, 0.030 * size**0.5, 0.08),
+        cap_height=around(rng, 0.032, 0.15),
     )
 
 

@@ -8,6 +8,7 @@ import numpy as np
 from numpy.typing import ArrayLike, NDArray
 from scipy.spatial import ConvexHull
 
+from experiments.catalogue.mass import mass_properties
 from experiments.catalogue.model import CatalogueObject
 from shared.geometry.rotation import frame_from_z, unit
 
@@ -44,7 +45,7 @@ def resting_poses(thing: CatalogueObject) -> tuple[RestingPose, ...]:
 
     A facet of the convex hull is stable when the centre of mass projects into it.
     """
-    centre = thing.centre_of_mass
+    centre = mass_properties(thing).centre
     hull = ConvexHull(thing.vertices)
     corners = hull.points[hull.simplices] - centre
     normals, depths = (
@@ -64,7 +65,7 @@ def resting_poses(thing: CatalogueObject) -> tuple[RestingPose, ...]:
         if held[facet].any():
             found.append((-normals[index], float(solid_angle[facet].sum())))
     total = sum(share for _, share in found)
-    found.sort(key=lambda each: -each[1])
+    found.sort(key=lambda each: (-round(each[1], 9), tuple(each[0])))
     return tuple(
         RestingPose((float(up[0]), float(up[1]), float(up[2])), share / total)
         for up, share in found
@@ -72,9 +73,15 @@ def resting_poses(thing: CatalogueObject) -> tuple[RestingPose, ...]:
 
 
 def resting_pose(thing: CatalogueObject, up: ArrayLike) -> RestingPose:
-    """Return the stable orientation whose upward direction is nearest to `up` (3,)."""
+    """Return the stable orientation whose upward direction is nearest to `up` (3,).
+
+    Of equally near ones (a bottle's side has many), the first in the order of
+    their coordinates.
+    """
     wanted = unit(up)
-    return max(resting_poses(thing), key=lambda pose: float(np.dot(pose.up, wanted)))
+    return min(
+        resting_poses(thing), key=lambda pose: (-round(float(np.dot(pose.up, wanted)), 9), pose.up)
+    )
 
 
 def _contains(corners: Array, points: Array, normals: Array) -> NDArray[np.bool_]:

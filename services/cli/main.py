@@ -1,4 +1,4 @@
-"""`sparge grasp` and `sparge serve`."""
+"""`sparge grasp`, `sparge serve`, and `sparge dataset`."""
 
 from __future__ import annotations
 
@@ -11,6 +11,7 @@ import orjson
 import typer
 from rich.console import Console
 
+from services.cli.dataset import dataset
 from shared.errors import SpargeError
 
 app = typer.Typer(
@@ -18,6 +19,9 @@ app = typer.Typer(
     no_args_is_help=True,
     pretty_exceptions_enable=False,
 )
+
+
+app.command()(dataset)
 
 
 class Reasoning(StrEnum):

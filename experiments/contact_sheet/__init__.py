@@ -1,0 +1,1 @@
+"""A picture of the catalogue, drawn by `python -m experiments.contact_sheet`."""
