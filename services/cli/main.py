@@ -1,4 +1,4 @@
-"""`sparge grasp`, `sparge serve`, and `sparge dataset`."""
+"""`sparge grasp`, `sparge serve`, and the measuring stick: `dataset` and `experiment`."""
 
 from __future__ import annotations
 
@@ -12,6 +12,7 @@ import typer
 from rich.console import Console
 
 from services.cli.dataset import dataset
+from services.cli.experiment import experiment
 from shared.errors import SpargeError
 
 app = typer.Typer(
@@ -22,6 +23,7 @@ app = typer.Typer(
 
 
 app.command()(dataset)
+app.command()(experiment)
 
 
 class Reasoning(StrEnum):

@@ -37,12 +37,20 @@ class Arm:
     """One Panda on a fixed base.
 
     Joint positions are arrays (7,) in radians; poses are (4, 4) of the grasp frame.
+
+    Parameters
+    ----------
+    bullet : Bullet
+    visible : bool
+        Load what is needed to draw it, too.
     """
 
-    def __init__(self, bullet: Bullet) -> None:
+    def __init__(self, bullet: Bullet, visible: bool = False) -> None:
         self._bullet = bullet
         self.body: int = bullet.loadURDF(
-            str(MODEL), useFixedBase=True, flags=pybullet.URDF_IGNORE_VISUAL_SHAPES
+            str(MODEL),
+            useFixedBase=True,
+            flags=0 if visible else pybullet.URDF_IGNORE_VISUAL_SHAPES,
         )
         joints = [bullet.getJointInfo(self.body, joint) for joint in JOINTS]
         self.lower = np.array([joint[8] for joint in joints]) + LIMIT_MARGIN
@@ -85,6 +93,11 @@ class Arm:
     @property
     def world_from_base(self) -> Array:
         return matrix_from_pose(*self._bullet.getBasePositionAndOrientation(self.body))
+
+    @property
+    def joints(self) -> Array:
+        """Where the joints are now."""
+        return np.array([state[0] for state in self._bullet.getJointStates(self.body, JOINTS)])
 
     def set_joints(self, joints: Array) -> None:
         """Put the joints at these positions, at rest, without simulating."""

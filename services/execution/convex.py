@@ -95,8 +95,8 @@ def convex_hull(points: Array) -> ConvexPart | None:
     return ConvexPart(points[hull.vertices], renumbered[faces])
 
 
-def write_obj(path: Path, part: ConvexPart) -> None:
-    """Write a part as a Wavefront OBJ file."""
-    lines = [f"v {x:.9g} {y:.9g} {z:.9g}" for x, y, z in part.vertices.tolist()]
-    lines += [f"f {a} {b} {c}" for a, b, c in (part.faces + 1).tolist()]
+def write_obj(path: Path, vertices: Array, faces: NDArray[np.int32]) -> None:
+    """Write triangles (F, 3) over vertices (V, 3) as a Wavefront OBJ file."""
+    lines = [f"v {x:.9g} {y:.9g} {z:.9g}" for x, y, z in vertices.tolist()]
+    lines += [f"f {a} {b} {c}" for a, b, c in (faces + 1).tolist()]
     path.write_text("\n".join(lines) + "\n")

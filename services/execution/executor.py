@@ -60,7 +60,7 @@ class Executor:
             ) from None
         try:
             simulator = self._ready(simulator)
-            return simulator.run(request, self._settings.time_limit_s)
+            return simulator.run(request, self._limit_s(request))
         finally:
             self._give_back(simulator)
 
@@ -69,6 +69,10 @@ class Executor:
         self._closed.set()
         for _ in range(self._idle.qsize()):
             self._give_back(self._idle.get())
+
+    def _limit_s(self, request: ExecuteRequest) -> float:
+        film = self._settings.film_time_s if request.animate else 0.0
+        return self._settings.time_limit_s + film
 
     def _ready(self, simulator: Simulator | None) -> Simulator:
         if self._closed.is_set():

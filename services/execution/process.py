@@ -17,7 +17,7 @@ import orjson
 
 from shared.errors import InternalError, SpargeError
 from shared.schemas.execution import ExecuteRequest
-from shared.wire import JSON, NPZ, decode, encode
+from shared.wire import NPZ, decode, encode
 
 READY = b"ready"
 ANSWER, FAILURE = b"A", b"F"
@@ -57,7 +57,7 @@ def respond(request: bytes) -> bytes:
 
     try:
         message = decode(ExecuteRequest, request, NPZ, max_unpacked_bytes=sys.maxsize)
-        return ANSWER + encode(execute(message), JSON)
+        return ANSWER + encode(execute(message), NPZ)
     except SpargeError as error:
         failure = error
     except Exception:

@@ -11,6 +11,7 @@ from numpy.typing import NDArray
 from services.execution.arm import FINGERS, HAND, HOME, MAX_OPENING, Arm
 from services.execution.body import rigid_body
 from services.execution.bullet import TIME_STEP, physics
+from services.execution.film import film
 from services.execution.hand import lowest_point
 from services.execution.outcome import (
     Held,
@@ -30,6 +31,7 @@ from services.execution.placement import (
     plan_motion,
     shifted,
 )
+from services.execution.recording import Recorder
 from services.execution.scene import scene_from_request
 from services.execution.world import SETTLE_S, World
 from shared.schemas.execution import ExecuteRequest, ExecuteResponse, Phase
@@ -76,10 +78,18 @@ def execute(request: ExecuteRequest) -> ExecuteResponse:
     if lowest < -TABLE_TOLERANCE:
         return _refused(inside_table(where, -lowest))
     raised = shifted(grasp, np.array([0.0, 0.0, max(0.0, TABLE_CLEARANCE - lowest)]))
+    body = rigid_body(scene.parts)
     with physics() as bullet:
-        world = World(bullet, rigid_body(scene.parts))
+        world = World(bullet, body)
         world.settle()
-        return Run(world, Arm(bullet), raised, opening).answer()
+        arm = Arm(bullet)
+        recorder = Recorder(world, arm) if request.animate else None
+        answer = Run(world, arm, raised, opening, recorder).answer()
+        recording = recorder.recording() if recorder is not None else None
+    if recording is None:
+        return answer
+    animation = film(request, scene, body, recording, answer.outcome)
+    return answer.model_copy(update={"animation": animation})
 
 
 def _refused(verdict: Verdict) -> ExecuteResponse:
@@ -105,13 +115,23 @@ class Run:
     world_from_grasp : (4, 4) array
     opening : float
         Of the fingers before they close, metres.
+    recorder : Recorder, optional
+        Watches the motion.
     """
 
-    def __init__(self, world: World, arm: Arm, world_from_grasp: Array, opening: float) -> None:
+    def __init__(
+        self,
+        world: World,
+        arm: Arm,
+        world_from_grasp: Array,
+        opening: float,
+        recorder: Recorder | None = None,
+    ) -> None:
         self._world = world
         self._arm = arm
         self._world_from_grasp = world_from_grasp
         self._opening = opening
+        self._recorder = recorder
         self._steps = round(SETTLE_S / TIME_STEP)
         self._phases: list[Phase] = []
         self._end_phase("settle")
@@ -150,7 +170,7 @@ class Run:
         problem = missed(left, right, arm.opening)
         if problem is not None:
             return problem
-        for _ in self._follow(plan.lift, LIFT_S, opening=0.0):
+        for _ in self._follow("lift", plan.lift, LIFT_S, opening=0.0):
             pass
         self._end_phase("lift")
         left, right = self._hold_still("hold", plan.lift[-1], HOLD_S)
@@ -159,7 +179,7 @@ class Run:
     def _advance(self, phase: str, path: Array, duration: float) -> Verdict | None:
         """Move along `path` with open fingers; stop when something resists."""
         recent: deque[tuple[float, float]] = deque(maxlen=FORCE_WINDOW)
-        for _ in self._follow(path, duration, self._opening):
+        for _ in self._follow(phase, path, duration, self._opening):
             on_table = self._arm.forces_on(self._world.table)
             on_object = self._arm.forces_on(self._world.object)
             recent.append((sum(on_table.values()), sum(on_object.values())))
@@ -179,7 +199,7 @@ class Run:
             return pushed(moved, turned)
         return None
 
-    def _follow(self, path: Array, duration: float, opening: float) -> Iterator[None]:
+    def _follow(self, phase: str, path: Array, duration: float, opening: float) -> Iterator[None]:
         """Move along joints (K, 7), slow at both ends; yield after each step."""
         count = round(duration / TIME_STEP)
         time = np.arange(1, count + 1) / count
@@ -189,21 +209,23 @@ class Run:
         velocities = np.gradient(goals, TIME_STEP, axis=0)
         velocities[-1] = 0.0
         for goal, velocity in zip(goals, velocities, strict=True):
-            self._step(goal, velocity, opening)
+            self._step(phase, goal, velocity, opening)
             yield
 
     def _hold_still(self, phase: str, joints: Array, duration: float) -> tuple[float, float]:
         """Press the fingers together; return each pad's mean force in the end, newtons."""
         recent: deque[list[float]] = deque(maxlen=FORCE_WINDOW)
         for _ in range(round(duration / TIME_STEP)):
-            self._step(joints, np.zeros_like(joints), 0.0)
+            self._step(phase, joints, np.zeros_like(joints), 0.0)
             forces = self._arm.forces_on(self._world.object)
             recent.append([forces.get(finger, 0.0) for finger in FINGERS])
         self._end_phase(phase)
         left, right = np.mean(recent, axis=0)
         return float(left), float(right)
 
-    def _step(self, goal: Array, velocity: Array, opening: float) -> None:
+    def _step(self, phase: str, goal: Array, velocity: Array, opening: float) -> None:
+        if self._recorder is not None:
+            self._recorder.watch(phase)
         self._arm.drive(goal, velocity)
         self._arm.drive_fingers(opening)
         self._world.step()

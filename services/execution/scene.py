@@ -30,6 +30,8 @@ class Scene:
 
     Attributes
     ----------
+    world_from_request : (4, 4) array
+        From the request's frame.
     world_from_grasp : (4, 4) array
         Its approach (+z) has no component along world y, unless it is nearly vertical.
     width : float
@@ -38,6 +40,7 @@ class Scene:
         The object in the world's frame, nothing of it below z = 0.
     """
 
+    world_from_request: Array
     world_from_grasp: Array
     width: float
     parts: tuple[ConvexPart, ...]
@@ -70,7 +73,7 @@ def scene_from_request(request: ExecuteRequest) -> Scene:
             "the object lies below the support plane: does plane.normal point to the objects?",
             field="plane",
         )
-    return Scene(world_from_frame @ frame_from_grasp, request.width, solid)
+    return Scene(world_from_frame, world_from_frame @ frame_from_grasp, request.width, solid)
 
 
 def _world_from_frame(

@@ -16,6 +16,8 @@ class ExecutionSettings(ServiceSettings):
         Simulation processes; each runs one execution at a time.
     time_limit_s : float
         Wall time that one execution may take before its process is ended.
+    film_time_s : float
+        How much longer it may take when it is filmed.
     queue_wait_s : float
         How long a request waits for a free process before it is told to come again.
     executions_per_worker : int
@@ -26,5 +28,6 @@ class ExecutionSettings(ServiceSettings):
 
     workers: int = Field(default=1, ge=1, le=64)
     time_limit_s: float = Field(default=30.0, gt=0)
+    film_time_s: float = Field(default=25.0, ge=0)
     queue_wait_s: float = Field(default=20.0, ge=0)
     executions_per_worker: int = Field(default=500, ge=1)

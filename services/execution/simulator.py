@@ -13,7 +13,7 @@ import orjson
 from services.execution.process import ANSWER, READY
 from shared.errors import DeadlineExceeded, InternalError, StageUnavailable, error_from_envelope
 from shared.schemas.execution import ExecuteRequest, ExecuteResponse
-from shared.wire import JSON, NPZ, decode, encode
+from shared.wire import NPZ, decode, encode
 
 START_LIMIT_S = 60.0
 
@@ -86,7 +86,7 @@ class Simulator:
                 stage="execution",
             ) from None
         if answer.startswith(ANSWER):
-            return decode(ExecuteResponse, answer[1:], JSON, max_unpacked_bytes=len(answer))
+            return decode(ExecuteResponse, answer[1:], NPZ, max_unpacked_bytes=sys.maxsize)
         failure = orjson.loads(answer[1:])
         raise error_from_envelope(failure["status"], failure) or InternalError("no envelope")
 

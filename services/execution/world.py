@@ -147,7 +147,7 @@ class World:
         with tempfile.TemporaryDirectory(prefix="sparge-object-") as folder:
             files = [str(Path(folder, f"{index}.obj")) for index in range(len(body.parts))]
             for file, part in zip(files, body.parts, strict=True):
-                write_obj(Path(file), part)
+                write_obj(Path(file), part.vertices, part.faces)
             shape = self.bullet.createCollisionShapeArray(
                 [pybullet.GEOM_MESH] * len(files), fileNames=files
             )

@@ -9,7 +9,7 @@ from fastapi import FastAPI
 from services.gateway.request import GraspParameters
 from shared.schemas.answer import GraspAnswer
 from shared.schemas.scene import View
-from shared.service.openapi import add_models, error_responses
+from shared.service.openapi import REFERENCE, add_models, error_responses
 from shared.wire import JSON, NPZ
 
 _NPZ_BODY = "arrays: points (N, 3), or depth (H, W), intrinsics (3, 3), depth_scale; others ignored"
@@ -35,7 +35,7 @@ def describe_grasp(app: FastAPI) -> None:
 
 
 def _operation() -> dict[str, Any]:
-    parameters = GraspParameters.model_json_schema()["properties"]
+    parameters = GraspParameters.model_json_schema(ref_template=REFERENCE)["properties"]
     arrays = View.model_json_schema()["properties"]
     del arrays["viewpoint"]
     fields = {**arrays, **parameters}

@@ -15,7 +15,7 @@ import numpy as np
 
 from services.gateway.request import GraspRequest
 from services.gateway.settings import GatewaySettings
-from shared.errors import DeadlineExceeded, UnknownGripper, UnknownTask
+from shared.errors import DeadlineExceeded, UnknownGripper
 from shared.schemas.grasp import (
     FIND_REGION,
     LIST_GRIPPERS,
@@ -30,7 +30,7 @@ from shared.schemas.grasp import (
 from shared.schemas.primitive import RECOVER, RecoverRequest, RecoverResponse
 from shared.schemas.route import Nothing, Request, Response, Route
 from shared.schemas.scene import PERCEIVE, PerceiveRequest, PerceiveResponse
-from shared.schemas.task import DECIDE, LIST_TASKS, DecideRequest, DecideResponse
+from shared.schemas.task import DECIDE, DecideRequest, DecideResponse
 from shared.service import StageClient
 
 
@@ -125,15 +125,19 @@ class Pipeline:
         return scene
 
     async def _check_names(self, run: _Run, request: GraspRequest) -> None:
-        tasks = await run.call(LIST_TASKS, Nothing())
-        known = sorted(task.name for task in tasks.tasks)
-        task = request.parameters.task
-        if task not in known:
-            raise UnknownTask(
-                f"unknown task {task!r}; known are {', '.join(known)}", found=task, known=known
-            )
+        question = request.parameters
+        await run.call(  # without parts it only says whether the task is known
+            DECIDE,
+            DecideRequest(
+                task=question.task,
+                reasoning=question.reasoning,
+                rule_set=self._settings.rule_set,
+                primitives=(),
+                explain=False,
+            ),
+        )
         grippers = sorted(g.name for g in (await run.call(LIST_GRIPPERS, Nothing())).grippers)
-        gripper = request.parameters.gripper
+        gripper = question.gripper
         if gripper not in grippers:
             raise UnknownGripper(
                 f"unknown gripper {gripper!r}; known are {', '.join(grippers)}",
@@ -152,6 +156,7 @@ class Pipeline:
                 plane=scene.plane,
                 up=scene.up,
                 preset=self._settings.preset,
+                parameters=request.parameters.recovery,
                 seed=request.parameters.seed,
             ),
         )

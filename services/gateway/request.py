@@ -10,6 +10,7 @@ from pydantic import Field
 
 from shared.errors import MalformedRequest
 from shared.schemas.fields import TaskText, Vector3
+from shared.schemas.primitive import EmsParameters
 from shared.schemas.scene import InputKind, View
 from shared.schemas.task import Version
 from shared.wire import Message
@@ -17,7 +18,7 @@ from shared.wire.codec import read_json_object, validate
 from shared.wire.files import read_cloud_file
 
 _ARRAYS = ("points", "depth", "intrinsics", "depth_scale")
-_JSON_VALUES = ("viewpoint", "target", "intrinsics", "depth_scale")
+_JSON_VALUES = ("viewpoint", "target", "recovery", "intrinsics", "depth_scale")
 
 
 class GraspParameters(Message):
@@ -31,6 +32,8 @@ class GraspParameters(Message):
     gripper: Annotated[str, Field(min_length=1, max_length=64)] = "panda"
     max_grasps: Annotated[int, Field(ge=0, le=100)] = 10
     seed: Annotated[int, Field(ge=0, lt=2**32)] = 0
+    recovery: EmsParameters | None = None
+    """Instead of the backend's own parameters of the superquadric recovery."""
     explain: bool = True
     frame_id: Annotated[str, Field(min_length=1, max_length=128)] = "camera"
 
@@ -81,15 +84,16 @@ def _request(arrays: dict[str, Any], fields: dict[str, Any]) -> GraspRequest:
 
 
 def _typed(texts: Mapping[str, str]) -> dict[str, Any]:
-    """Turn query and form texts into values: numbers and lists of them are JSON."""
+    """Turn query and form texts into values: numbers, lists and objects are JSON."""
     values: dict[str, Any] = dict(texts)
     for name in _JSON_VALUES:
         if name in values:
             try:
                 values[name] = orjson.loads(values[name])
             except orjson.JSONDecodeError:
+                example = '{"eps": 0.02, ...}' if name == "recovery" else "[0, 0, 0]"
                 raise MalformedRequest(
-                    f"{name} must be JSON, as in [0, 0, 0]; found {values[name][:80]!r}",
+                    f"{name} must be JSON, as in {example}; found {values[name][:80]!r}",
                     field=name,
                 ) from None
     return values

@@ -7,10 +7,15 @@ import numpy as np
 from services.primitive_recovery.classify import ShapeClassifier
 from services.primitive_recovery.ems.hierarchy import Part, decompose
 from services.primitive_recovery.ems.overlap import kept_after_overlap
-from services.primitive_recovery.ems.presets import PRESETS
 from services.primitive_recovery.settings import PrimitiveRecoverySettings
 from services.primitive_recovery.validation import checked_cloud
-from shared.schemas.primitive import Primitive, RecoverRequest, RecoverResponse, ShapeClass
+from shared.schemas.primitive import (
+    PRESETS,
+    Primitive,
+    RecoverRequest,
+    RecoverResponse,
+    ShapeClass,
+)
 from shared.superquadric import Superquadric
 
 
@@ -37,7 +42,7 @@ class PrimitiveRecovery:
             See `checked_cloud`.
         """
         points = checked_cloud(request.points, self._settings.max_points)
-        parameters = PRESETS[request.preset or self._settings.preset]
+        parameters = request.parameters or PRESETS[request.preset or self._settings.preset]
         rng = np.random.default_rng(request.seed)
         viewpoint = np.array(request.viewpoint)
         parts = decompose(points, parameters, viewpoint, self._settings.fit_points, rng)

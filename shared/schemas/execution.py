@@ -8,7 +8,7 @@ import numpy as np
 from numpy.typing import NDArray
 from pydantic import Field, FiniteFloat, model_validator
 
-from shared.schemas.fields import Direction, Points, SuperquadricVector
+from shared.schemas.fields import Direction, Mask, Points, SuperquadricVector
 from shared.schemas.grasp import Pose
 from shared.schemas.route import Route
 from shared.schemas.scene import SupportPlane
@@ -40,6 +40,10 @@ class ExecuteRequest(Message):
     up: Direction | None = None
     gripper: str = "panda"
     seed: Annotated[int, Field(ge=0, lt=2**32)] = 0
+    animate: bool = False
+    """Film what happens; changes nothing about it, but takes a few seconds longer."""
+    highlight: Mask | None = None
+    """Faces (F,) of the mesh that the film shows in another colour, as the part to hold."""
 
     @model_validator(mode="after")
     def _one_object(self) -> Self:
@@ -49,6 +53,10 @@ class ExecuteRequest(Message):
             raise ValueError("give a mesh (vertices, faces) or primitives")
         if self.vertices is not None and self.faces is not None:
             self._check_mesh(self.vertices, self.faces)
+        if self.highlight is not None and len(self.highlight) != (
+            0 if self.faces is None else len(self.faces)
+        ):
+            raise ValueError("highlight needs one entry for every face of the mesh")
         if self.plane is None and self.up is None:
             raise ValueError("give plane or up, so that gravity has a direction")
         return self
@@ -78,6 +86,9 @@ class ExecuteResponse(Message):
     lift_height: float
     """How far the object rose, in metres."""
     phases: tuple[Phase, ...]
+    animation: Annotated[NDArray[np.uint8], ArrayField("uint8", ("B",))] | None = None
+    """The bytes of an animated GIF, at most 4 MiB, where one was asked for; None when
+    nothing moved because no motion was found or the grasp was refused."""
 
 
 EXECUTE = Route(

@@ -2,6 +2,7 @@
 
 from __future__ import annotations
 
+from types import MappingProxyType
 from typing import Annotated, Literal
 
 from pydantic import Field
@@ -35,6 +36,61 @@ class Primitive(Message):
         return Superquadric.from_vector(self.parameters)
 
 
+class EmsParameters(Message):
+    """How superquadrics are recovered: Table A.1 of the thesis, by name.
+
+    Lengths and costs of a fit are in units of a tenth of the cloud's largest
+    coordinate about its mean, as Liu et al. (CVPR 2022) rescale it. The limits are
+    the table's ranges, widened to what still makes sense.
+    """
+
+    outlier_ratio: Annotated[float, Field(ge=0, le=0.9999)]
+    """Prior probability that a point is no part of the superquadric."""
+    max_iterations: Annotated[int, Field(ge=1, le=100)]
+    """Rounds of expectation and maximization at most."""
+    tolerance: Annotated[float, Field(ge=0, le=1)]
+    """A weighted sum of squared distances below this is good enough."""
+    relative_tolerance: Annotated[float, Field(ge=0, le=10)]
+    """A round that lowers the cost by a smaller share than this (of the new cost)
+    has settled: time for a switch, or for the end."""
+    max_switches: Annotated[int, Field(ge=0, le=16)]
+    """How often similar shapes are tried."""
+    adaptive_upper_bound: bool
+    """Bound each semi-axis by the points' reach along it."""
+    eps: Annotated[float, Field(ge=1e-4, le=1)]
+    """Reach of DBSCAN on the outliers, in metres."""
+    min_points: Annotated[int, Field(ge=11, le=100_000)]
+    """Points within reach that make a DBSCAN core point, and the fewest that a
+    further superquadric is fitted to."""
+
+
+PRESETS: MappingProxyType[Preset, EmsParameters] = MappingProxyType(
+    {
+        "simulation": EmsParameters(
+            outlier_ratio=0.965,
+            max_iterations=18,
+            tolerance=0.00468,
+            relative_tolerance=0.867,
+            max_switches=2,
+            adaptive_upper_bound=False,
+            eps=0.0131,
+            min_points=100,
+        ),
+        "real_world": EmsParameters(
+            outlier_ratio=0.996,
+            max_iterations=18,
+            tolerance=0.00430,
+            relative_tolerance=0.804,
+            max_switches=2,
+            adaptive_upper_bound=True,
+            eps=0.0397,
+            min_points=150,
+        ),
+    }
+)
+"""Both columns of values of Table A.1."""
+
+
 class RecoverRequest(Message):
     """An object's visible points in metres, and what perception knows around it."""
 
@@ -44,6 +100,8 @@ class RecoverRequest(Message):
     up: Direction | None = None
     preset: Preset | None = None
     """Parameters of Table A.1; without it, the service's own setting."""
+    parameters: EmsParameters | None = None
+    """Instead of the preset's."""
     seed: Annotated[int, Field(ge=0, lt=2**32)] = 0
 
 

@@ -13,6 +13,9 @@ from shared.schemas.route import Route
 from shared.service.envelope import ErrorEnvelope
 from shared.wire import JSON, NPZ, Message
 
+REFERENCE = "#/components/schemas/{model}"
+"""How a document refers to one of its schemas."""
+
 _ERRORS = {
     "400": "The body cannot be parsed",
     "413": "The body is too large",
@@ -52,7 +55,7 @@ def add_models(document: dict[str, Any], models: Sequence[type[BaseModel]]) -> N
     wanted = [(model, "validation") for model in dict.fromkeys([*models, ErrorEnvelope])]
     _, definitions = models_json_schema(
         wanted,  # type: ignore[arg-type]  # a list of (model, mode) pairs
-        ref_template="#/components/schemas/{model}",
+        ref_template=REFERENCE,
     )
     schemas = document.setdefault("components", {}).setdefault("schemas", {})
     schemas.update(definitions["$defs"])

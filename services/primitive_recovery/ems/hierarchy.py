@@ -9,9 +9,9 @@ from numpy.typing import NDArray
 
 from services.primitive_recovery.ems.clusters import dense_clusters
 from services.primitive_recovery.ems.expectation import OUTLIER_PROBABILITY
-from services.primitive_recovery.ems.presets import Parameters
 from services.primitive_recovery.ems.recovery import Fit, recover_one
 from services.primitive_recovery.validation import flatness
+from shared.schemas.primitive import EmsParameters
 from shared.superquadric import Superquadric
 
 Array = NDArray[np.float64]
@@ -42,7 +42,7 @@ class Part:
 
 def decompose(
     points: Array,
-    parameters: Parameters,
+    parameters: EmsParameters,
     viewpoint: Array,
     fit_points: int,
     rng: np.random.Generator,
@@ -74,7 +74,7 @@ def _part(fit: Fit) -> Part:
     return Part(fit.superquadric, int(inlier.sum()), float(np.sqrt((distances**2).mean())))
 
 
-def _left_over(cloud: Array, fit: Fit, parameters: Parameters) -> list[Array]:
+def _left_over(cloud: Array, fit: Fit, parameters: EmsParameters) -> list[Array]:
     if fit.probability.sum() >= ENOUGH_INLIERS * len(cloud):
         return []
     outliers = np.ascontiguousarray(cloud[fit.probability < OUTLIER_PROBABILITY])

@@ -2,7 +2,6 @@
 
 from __future__ import annotations
 
-import dataclasses
 from dataclasses import dataclass
 
 import numpy as np
@@ -12,13 +11,16 @@ from services.primitive_recovery.ems.bounds import current_bounds
 from services.primitive_recovery.ems.expectation import OUTLIER_PROBABILITY, inlier_probability
 from services.primitive_recovery.ems.kernels import UNKNOWNS
 from services.primitive_recovery.ems.maximization import maximize
-from services.primitive_recovery.ems.presets import Parameters
 from services.primitive_recovery.ems.start import THINNEST, FitFrame, first_guess
 from services.primitive_recovery.ems.state import State
 from services.primitive_recovery.ems.switch import switch
+from shared.schemas.primitive import EmsParameters
 from shared.superquadric import Superquadric
 
 Array = NDArray[np.float64]
+
+START_VARIANCE = 0.3
+"""sigma^2 that the expectation starts with. Not in Table A.1; the thesis runs all of it so."""
 
 _LEAST_VARIANCE = 1e-6
 _LEAST_ITERATIONS = 12
@@ -48,7 +50,7 @@ class Fit:
 
 def recover_one(
     points: Array,
-    parameters: Parameters,
+    parameters: EmsParameters,
     viewpoint: Array,
     fit_points: int,
     rng: np.random.Generator,
@@ -61,7 +63,7 @@ def recover_one(
     ----------
     points : (N, 3) array
         In metres; finite, and not all on one plane.
-    parameters : Parameters
+    parameters : EmsParameters
     viewpoint : (3,) array
         Where the sensor was, in metres: a sheet of points is taken for the near face.
     fit_points : int
@@ -82,7 +84,7 @@ def recover_one(
     probability = inlier_probability(distances, variance, parameters.outlier_ratio, volume)
     if (probability >= OUTLIER_PROBABILITY).sum() < UNKNOWNS:
         # It stands on nothing: too few or too scattered points for outliers to be told.
-        trusting = dataclasses.replace(parameters, outlier_ratio=0.0)
+        trusting = parameters.model_copy(update={"outlier_ratio": 0.0})
         state, _ = _iterate(sample, start, volume, trusting)
         distances = state.distances(cloud)
         probability = np.ones(len(cloud))
@@ -90,9 +92,9 @@ def recover_one(
 
 
 def _iterate(
-    points: Array, state: State, volume: float, parameters: Parameters
+    points: Array, state: State, volume: float, parameters: EmsParameters
 ) -> tuple[State, float]:
-    variance, cost, switches = parameters.start_variance, np.inf, 0
+    variance, cost, switches = START_VARIANCE, np.inf, 0
     for iteration in range(parameters.max_iterations):
         weights = inlier_probability(
             state.distances(points), variance, parameters.outlier_ratio, volume

@@ -12,7 +12,9 @@ from shared.wire import JSON, NPZ, decode, encode
 from tests.services.execution.scenes import (
     CAMERA_FROM_WORLD,
     STANDING_SUPERQUADRIC,
+    box,
     cylinder,
+    from_above,
     from_side,
     request,
 )
@@ -37,6 +39,23 @@ def test_a_mesh_over_the_wire(client: Client, media_type: str) -> None:
     assert response.status_code == 200
     answer = decode(ExecuteResponse, response.content, media_type, 10**6)
     assert (answer.success, answer.outcome) == (True, "lifted")
+
+
+def test_a_film_over_the_wire(client: Client) -> None:
+    block = box((0.05, 0.05, 0.03), (0, 0, 0.03))
+    asked = request((0, 0, 0.045), from_above(), block, width=0.03, animate=True)
+    answers = []
+    for media_type in (JSON, NPZ):
+        response = client.request(
+            "POST",
+            "/execute",
+            content=encode(asked, media_type),
+            headers={"Content-Type": media_type, "Accept": media_type},
+        )
+        assert response.status_code == 200
+        answers.append(decode(ExecuteResponse, response.content, media_type, 10**7))
+    assert answers[0].animation is not None
+    assert answers[0] == answers[1]
 
 
 GOOD = orjson.loads(

@@ -114,6 +114,19 @@ def test_a_process_that_hangs_is_ended_and_replaced() -> None:
         stage.close()
 
 
+def test_a_filmed_execution_may_take_longer() -> None:
+    stage = Executor(ExecutionSettings(time_limit_s=0.2, film_time_s=0.5))
+    try:
+        stage.warm_up()
+        (simulator,) = stage._idle.queue
+        assert simulator is not None
+        os.kill(simulator._process.pid, signal.SIGSTOP)
+        with pytest.raises(DeadlineExceeded, match=r"0\.7 s"):
+            stage.execute(LIFTED.model_copy(update={"animate": True}))
+    finally:
+        stage.close()
+
+
 def test_who_waits_too_long_is_told_to_come_again() -> None:
     stage = Executor(ExecutionSettings(queue_wait_s=0.05, time_limit_s=20))
     try:

@@ -12,6 +12,7 @@ import pytest
 from PIL import Image
 
 from shared.geometry.points import points_from_depth
+from shared.schemas.primitive import PRESETS
 from shared.wire.npz import read_npz, write_npz
 from tests.support.samples import sample_path, sample_view
 from tests.support.serving import Client
@@ -206,3 +207,12 @@ def test_requests_side_by_side_do_not_mix(backend: Client) -> None:
     with ThreadPoolExecutor(8) as pool:
         together = list(pool.map(lambda each: answer(backend, BOTTLE, **each), questions * 3))
     assert [timeless(each) for each in together] == alone * 3
+
+
+def test_parameters_of_the_recovery_reach_it(backend: Client) -> None:
+    plain = answer(backend)
+    same = answer(backend, recovery=PRESETS["simulation"].model_dump_json())
+    assert timeless(same) == timeless(plain)
+    assert len(plain["primitives"]) > 1
+    alone = PRESETS["simulation"].model_copy(update={"min_points": 100_000})
+    assert len(answer(backend, recovery=alone.model_dump_json())["primitives"]) == 1

@@ -14,7 +14,17 @@ from shared.wire.npz import write_npz
 
 LIMIT = 10**7
 CLOUD = np.array([[0.0, 0.0, 1.0], [0.1, 0.0, 1.0], [0.0, 0.1, 1.1]])
-QUERY = {"task": "pouring", "viewpoint": "[0, 0, 0.5]", "seed": "3", "explain": "false"}
+RECOVERY = (
+    '{"outlier_ratio": 0.9, "max_iterations": 20, "tolerance": 0.001, "relative_tolerance": 0.5,'
+    ' "max_switches": 3, "adaptive_upper_bound": true, "eps": 0.02, "min_points": 80}'
+)
+QUERY = {
+    "task": "pouring",
+    "viewpoint": "[0, 0, 0.5]",
+    "seed": "3",
+    "explain": "false",
+    "recovery": RECOVERY,
+}
 
 
 def xyz(points: np.ndarray) -> bytes:
@@ -26,7 +36,7 @@ def xyz(points: np.ndarray) -> bytes:
 def test_all_bodies_agree() -> None:
     by_json = from_json(
         b'{"points": [[0,0,1],[0.1,0,1],[0,0.1,1.1]], "task": "pouring", "seed": 3,'
-        b' "viewpoint": [0, 0, 0.5], "explain": false}',
+        b' "viewpoint": [0, 0, 0.5], "explain": false, "recovery": ' + RECOVERY.encode() + b"}",
         {},
     )
     by_npz = from_npz(write_npz({"points": CLOUD}), QUERY, LIMIT)
@@ -36,6 +46,9 @@ def test_all_bodies_agree() -> None:
     assert list(by_json.parameters.viewpoint) == [0, 0, 0.5]
     assert list(by_json.view.viewpoint) == [0, 0, 0.5]
     assert not by_json.parameters.explain
+    recovery = by_json.parameters.recovery
+    assert recovery is not None
+    assert recovery.model_dump_json() == RECOVERY.replace(" ", "")
 
 
 def test_defaults_are_the_contracts() -> None:
@@ -49,6 +62,7 @@ def test_defaults_are_the_contracts() -> None:
         "gripper": "panda",
         "max_grasps": 10,
         "seed": 0,
+        "recovery": None,
         "explain": True,
         "frame_id": "camera",
     }
@@ -87,6 +101,10 @@ def test_a_depth_image_with_its_scale_and_other_arrays() -> None:
         ({"task": "pouring", "target": "[0, 0, null]"}, "target"),
         ({"task": "pouring", "resoning": "v1"}, "resoning"),
         ({"task": "pouring", "input": "room"}, "input"),
+        ({"task": "pouring", "recovery": "[1]"}, "recovery"),
+        ({"task": "pouring", "recovery": '{"eps": 0.02}'}, "recovery.max_switches: Field required"),
+        ({"task": "pouring", "recovery": RECOVERY.replace("0.9", "1.0")}, "outlier_ratio"),
+        ({"task": "pouring", "recovery": RECOVERY.replace("eps", "epsilon")}, "recovery.epsilon"),
     ],
 )
 def test_bad_parameters_are_named(query: dict[str, str], told: str) -> None:
@@ -94,9 +112,10 @@ def test_bad_parameters_are_named(query: dict[str, str], told: str) -> None:
         from_npz(write_npz({"points": CLOUD}), query, LIMIT)
 
 
-def test_a_vector_that_is_not_json() -> None:
-    with pytest.raises(MalformedRequest, match="viewpoint"):
-        from_npz(write_npz({"points": CLOUD}), {"task": "a", "viewpoint": "0 0 0"}, LIMIT)
+@pytest.mark.parametrize(("name", "text"), [("viewpoint", "0 0 0"), ("recovery", "eps=0.02")])
+def test_a_value_that_is_not_json(name: str, text: str) -> None:
+    with pytest.raises(MalformedRequest, match=f"{name} must be JSON"):
+        from_npz(write_npz({"points": CLOUD}), {"task": "a", name: text}, LIMIT)
 
 
 @pytest.mark.parametrize(

@@ -1,13 +1,12 @@
 from __future__ import annotations
 
-import dataclasses
 from typing import Any
 
 import numpy as np
 from scipy.spatial.transform import Rotation
 
 from services.primitive_recovery.ems.hierarchy import MAX_SUPERQUADRICS, Part, decompose
-from services.primitive_recovery.ems.presets import PRESETS
+from shared.schemas.primitive import PRESETS
 from tests.services.primitive_recovery.clouds import (
     Array,
     hammer,
@@ -18,7 +17,7 @@ from tests.services.primitive_recovery.clouds import (
 
 
 def parts(points: Array, **changes: Any) -> list[Part]:
-    parameters = dataclasses.replace(PRESETS["simulation"], **changes)
+    parameters = PRESETS["simulation"].model_copy(update=changes)
     return decompose(points, parameters, np.zeros(3), 1000, np.random.default_rng(0))
 
 

@@ -2,15 +2,13 @@
 
 from __future__ import annotations
 
-import dataclasses
 from typing import Any
 
 import numpy as np
 import pytest
 
-from services.primitive_recovery.ems.presets import PRESETS, Parameters
 from services.primitive_recovery.ems.recovery import Fit, recover_one
-from shared.schemas.primitive import Preset
+from shared.schemas.primitive import PRESETS, EmsParameters, Preset
 from shared.superquadric import radial_distance
 from tests.services.primitive_recovery.clouds import (
     Array,
@@ -24,7 +22,7 @@ SIMULATION = PRESETS["simulation"]
 NOISE = 0.0015
 
 
-def fit(points: Array, parameters: Parameters = SIMULATION, fit_points: int = 1000) -> Fit:
+def fit(points: Array, parameters: EmsParameters = SIMULATION, fit_points: int = 1000) -> Fit:
     return recover_one(points, parameters, np.zeros(3), fit_points, np.random.default_rng(0))
 
 
@@ -127,7 +125,6 @@ CHANGED: dict[str, Any] = {
     "relative_tolerance": -1e9,
     "max_switches": 0,
     "adaptive_upper_bound": True,
-    "start_variance": 3.0,
 }
 
 
@@ -137,5 +134,5 @@ def test_every_parameter_of_the_fit_does_something(name: str) -> None:
     body = superquadric((0.2, 1.6), (0.03, 0.05, 0.12), (0.0, 0.0, 0.8))
     points = surface_points(body, 1500, rng, one_view=True)
     points += 0.002 * rng.normal(size=points.shape)
-    changed = dataclasses.replace(SIMULATION, **{name: CHANGED[name]})
+    changed = SIMULATION.model_copy(update={name: CHANGED[name]})
     assert fit(points, changed).superquadric != fit(points).superquadric

@@ -19,7 +19,13 @@ from shared.errors import (
     SpargeError,
     WrongUnits,
 )
-from shared.schemas.primitive import Preset, RecoverRequest, RecoverResponse
+from shared.schemas.primitive import (
+    PRESETS,
+    EmsParameters,
+    Preset,
+    RecoverRequest,
+    RecoverResponse,
+)
 from tests.services.primitive_recovery.clouds import Array, hammer, superquadric, surface_points
 
 
@@ -88,6 +94,18 @@ def test_the_setting_is_the_default_preset(can: Array) -> None:
     assert real.recover(RecoverRequest(points=can)) == asked.recover(
         RecoverRequest(points=can, preset="real_world")
     )
+
+
+def test_parameters_of_the_request_win_over_the_preset(
+    stage: PrimitiveRecovery, rng: np.random.Generator
+) -> None:
+    points = hammer(rng)
+    real = PRESETS["real_world"]
+    named = stage.recover(RecoverRequest(points=points, preset="real_world"))
+    given = RecoverRequest(points=points, preset="simulation", parameters=real)
+    assert stage.recover(given) == named
+    alone = real.model_copy(update={"min_points": 100_000})
+    assert len(stage.recover(RecoverRequest(points=points, parameters=alone)).primitives) == 1
 
 
 def turned_plane(rng: np.random.Generator) -> Array:
@@ -179,3 +197,25 @@ def test_any_cloud_is_answered_or_refused(
     except InvalidInput:
         return
     assert_sound(response, points)
+
+
+@settings(max_examples=40, deadline=None)
+@given(
+    st.builds(
+        EmsParameters,
+        outlier_ratio=st.sampled_from([0.0, 0.5, 0.9999]),
+        max_iterations=st.sampled_from([1, 10, 100]),
+        tolerance=st.sampled_from([0.0, 1e-4, 1.0]),
+        relative_tolerance=st.sampled_from([0.0, 0.5, 10.0]),
+        max_switches=st.sampled_from([0, 1, 16]),
+        adaptive_upper_bound=st.booleans(),
+        eps=st.sampled_from([1e-4, 0.01, 1.0]),
+        min_points=st.sampled_from([11, 100, 100_000]),
+    ),
+    st.integers(0, 2**32 - 1),
+)
+def test_any_parameters_give_sound_parts(
+    stage: PrimitiveRecovery, parameters: EmsParameters, seed: int
+) -> None:
+    points = hammer(np.random.default_rng(seed))[::8]
+    assert_sound(stage.recover(RecoverRequest(points=points, parameters=parameters)), points)

@@ -1,0 +1,1 @@
+"""Experiment 1 of the thesis: a new task, cutting."""

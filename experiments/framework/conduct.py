@@ -1,0 +1,107 @@
+"""Running an experiment from its name to its page."""
+
+from __future__ import annotations
+
+from collections.abc import Sequence
+from pathlib import Path
+
+from rich.console import Console
+
+from experiments.framework.asking import progress_bar
+from experiments.framework.experiment import Context, Experiment, Findings
+from experiments.framework.provenance import provenance
+from experiments.framework.report import save
+from experiments.framework.views import ViewSet, catalogue_set, scan_sets
+from shared.client import Sparge
+
+VIEWS = "views"
+"""Folder under the results that keeps the catalogue's views."""
+
+
+def conduct(
+    experiment: Experiment, context: Context, results: Path, where: str
+) -> tuple[Findings, Path]:
+    """Run an experiment and keep what it finds.
+
+    Parameters
+    ----------
+    experiment : Experiment
+    context : Context
+    results : Path
+        Folder of all experiments.
+    where : str
+        What is asked, in words.
+
+    Returns
+    -------
+    findings : Findings
+    page : Path
+        The report.
+
+    Raises
+    ------
+    SpargeError
+        The backend is down or failed, or there is nothing to ask about.
+    """
+    run = provenance(context.sparge, where, context.seed)
+    context.folder.mkdir(parents=True, exist_ok=True)
+    findings = experiment.run(context)
+    return findings, save(results, experiment, findings, run)
+
+
+def view_sets(
+    experiment: Experiment,
+    results: Path,
+    scans: Sequence[Path],
+    *,
+    catalogue: bool,
+    limit: int | None,
+    seed: int,
+    console: Console,
+    workers: int = 1,
+) -> tuple[ViewSet, ...]:
+    """Return what the experiment is to be asked about; renders the catalogue's views if need be.
+
+    Raises
+    ------
+    InvalidInput
+        A folder of scans holds no views.
+    """
+    if experiment.views_per_object is None:
+        return ()
+    sets = scan_sets(scans)
+    if not catalogue:
+        return sets
+    with progress_bar(console) as progress:
+        bar = progress.add_task("rendering views")
+        made = catalogue_set(
+            results / VIEWS,
+            limit or experiment.views_per_object,
+            seed,
+            workers=workers,
+            progress=lambda done, total: progress.update(bar, completed=done, total=total),
+        )
+    return (made, *sets)
+
+
+def context_for(
+    experiment: Experiment,
+    sparge: Sparge,
+    console: Console,
+    results: Path,
+    sets: tuple[ViewSet, ...],
+    *,
+    limit: int | None,
+    seed: int,
+    workers: int,
+) -> Context:
+    """Return what an experiment is given."""
+    return Context(
+        sparge=sparge,
+        console=console,
+        folder=results / experiment.name,
+        sets=tuple(each.limited(limit or experiment.views_per_object) for each in sets),
+        limit=limit,
+        seed=seed,
+        workers=workers,
+    )

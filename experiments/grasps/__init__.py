@@ -1,0 +1,1 @@
+"""Experiment 3 of the thesis: the chosen grasp against labels."""

@@ -1,0 +1,1 @@
+"""Experiment 2 of the thesis: regions against labels."""

@@ -1,0 +1,1 @@
+"""Regions under disturbances, and in another frame."""

@@ -1,1 +1,0 @@
-"""Train and measure the shape classifier of the primitive recovery (thesis A.1.2)."""

@@ -1,0 +1,1 @@
+"""Name superquadrics cuboid, cylinder or sphere: criterion, methods, model (thesis A.1.2)."""

@@ -1,0 +1,1 @@
+"""Experiment 4 of the thesis: what a request takes."""

@@ -1,0 +1,169 @@
+"""Timing requests, one at a time."""
+
+from __future__ import annotations
+
+import time
+from collections.abc import Sequence
+from dataclasses import dataclass
+from statistics import median
+
+from experiments.framework import Context, ShownView, ViewSet
+from experiments.framework.asking import NOT_THE_VIEW, VERSIONS, progress_bar
+from experiments.framework.views import load
+from shared.client import Sparge
+from shared.errors import InvalidInput, SpargeError
+from shared.schemas.route import Nothing
+from shared.schemas.task import LIST_TASKS
+
+PAIRS = (("handover", "spatula"), ("handover", "bottle"), ("hammering", "hammer"))
+"""What the thesis measures: task and class (6.5.1)."""
+COMPARABLE = ("primitive_recovery", "reasoning", "matching")
+"""Our stages that do what the thesis's total covers: no perception, no grasp detection."""
+STAGES = (
+    ("parsing", "parsing the body", ()),
+    ("perception", "perception", ()),
+    (
+        "primitive_recovery",
+        "primitive recovery",
+        ("superquadrics", "overlap removal", "shape classification"),
+    ),
+    ("reasoning", "reasoning", ("reasoning",)),
+    ("matching", "matching", ("point cloud segmentation",)),
+    ("grasp_proposal", "grasp proposal", ()),
+)
+
+
+@dataclass(frozen=True)
+class Timed:
+    """What one request took, in seconds.
+
+    Attributes
+    ----------
+    tasks : int
+        How many tasks the backend knew.
+    task, class_name, reasoning : str
+    stages : mapping
+        As the backend measured them.
+    seen : float
+        From the client's call to its answer.
+    """
+
+    tasks: int
+    task: str
+    class_name: str
+    reasoning: str
+    stages: dict[str, float]
+    seen: float
+
+    @property
+    def total(self) -> float:
+        """The whole request, as the backend measured it."""
+        return self.stages["total"]
+
+    @property
+    def reasoning_stage(self) -> float:
+        """The stage that knows the tasks."""
+        return self.stages.get("reasoning", 0.0)
+
+    @property
+    def comparable(self) -> float:
+        """What the thesis's total covers."""
+        return sum(self.stages.get(stage, 0.0) for stage in COMPARABLE)
+
+    def record(self) -> dict[str, str]:
+        """Return it as a line of a CSV file, in milliseconds."""
+        return {
+            "tasks": str(self.tasks),
+            "task": self.task,
+            "class": self.class_name,
+            "reasoning": self.reasoning,
+            **{stage: f"{1e3 * self.stages.get(stage, 0.0):.2f}" for stage, *_ in STAGES},
+            "comparable": f"{1e3 * self.comparable:.2f}",
+            "total": f"{1e3 * self.total:.2f}",
+            "seen": f"{1e3 * self.seen:.2f}",
+        }
+
+
+@dataclass(frozen=True)
+class Case:
+    """A view and the task that it is asked for."""
+
+    view: ShownView
+    task: str
+    class_name: str
+
+
+def cases_of(views: ViewSet, per_pair: int) -> list[Case]:
+    """Return the thesis's pairs; of views whose classes are unknown, every object's first task.
+
+    Raises
+    ------
+    InvalidInput
+        There are no views.
+    """
+    cases: list[Case] = []
+    for task, class_name in PAIRS:
+        chosen = _spread(of_class(views, class_name), per_pair)
+        cases += [Case(load(file), task, class_name) for file in chosen.files]
+    if not cases:
+        loaded = [(file.object_name, load(file)) for file in views.files[: per_pair * len(PAIRS)]]
+        cases = [Case(view, view.tasks[0], name) for name, view in loaded if view.tasks]
+    if not cases:
+        raise InvalidInput("there are no views to time requests with")
+    return cases
+
+
+def of_class(views: ViewSet, class_name: str) -> ViewSet:
+    """Return the views of a class of objects."""
+    return views.only(lambda file: views.thing(file).class_name == class_name)
+
+
+def _spread(views: ViewSet, count: int) -> ViewSet:
+    """Return `count` views, as evenly as can be over the objects: all first views come first."""
+    order = sorted(views.files, key=lambda file: (file.number, file.object_name))
+    kept = set(order[:count])
+    return views.only(kept.__contains__)
+
+
+def measure(context: Context, cases: Sequence[Case], tasks: int, describe: str) -> list[Timed]:
+    """Ask one at a time, the versions in turns."""
+    timed: list[Timed | None] = []
+    with progress_bar(context.console) as progress:
+        for case in progress.track(cases, description=describe):
+            timed += [_time(context.sparge, case, version, tasks) for version in VERSIONS]
+    return [each for each in timed if each is not None]
+
+
+def _time(sparge: Sparge, case: Case, version: str, tasks: int) -> Timed | None:
+    """Return what a request takes; None where the view is refused."""
+    arrays = case.view.arrays()
+    started = time.perf_counter()
+    try:
+        result = sparge.grasp(arrays, case.task, reasoning=version)
+    except NOT_THE_VIEW:
+        raise
+    except SpargeError:
+        return None
+    seen = time.perf_counter() - started
+    stages = {name: 1e-3 * spent for name, spent in result.answer.timings_ms.items()}
+    return Timed(tasks, case.task, case.class_name, version, stages, seen)
+
+
+def of_version(timed: Sequence[Timed], version: str) -> list[Timed]:
+    """Return the requests to one version."""
+    return [each for each in timed if each.reasoning == version]
+
+
+def counts_of(timed: Sequence[Timed]) -> list[int]:
+    """Return the numbers of tasks that were timed, ascending."""
+    return sorted({each.tasks for each in timed})
+
+
+def time_listing(sparge: Sparge, repeat: int = 3) -> float:
+    """Return the median seconds of GET /tasks."""
+    spent = []
+    for _ in range(repeat):
+        started = time.perf_counter()
+        sparge.call(LIST_TASKS, Nothing())
+        spent.append(time.perf_counter() - started)
+    return median(spent)
