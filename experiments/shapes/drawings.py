@@ -23,7 +23,6 @@ _SIZES: Mapping[str, tuple[float, float, float]] = {
     "1 : 1 : 2, upright": (0.05, 0.05, 0.1),
     "4 : 1 : 1, lying": (0.1, 0.025, 0.025),
 }
-_STEPS = 48
 
 
 def confusions(matrices: Mapping[str, Labels]) -> Figure:
@@ -78,11 +77,17 @@ def reliability(sets: Mapping[str, Calibration]) -> Figure:
     return figure
 
 
-def borders() -> Figure:
-    """Draw which name goes with which exponents: the criterion above, the shipped model below."""
+def borders(count: int) -> Figure:
+    """Draw which name goes with which exponents: the criterion above, the shipped model below.
+
+    Parameters
+    ----------
+    count : int
+        Of steps from the least exponent to the largest.
+    """
     figure = new_figure(9.0, 6.2)
     grid = figure.subplots(2, len(_SIZES), sharex=True, sharey=True)
-    steps = np.linspace(*EXPONENTS, _STEPS)
+    steps = np.linspace(*EXPONENTS, count)
     e1, e2 = (axis.ravel() for axis in np.meshgrid(steps, steps, indexing="ij"))
     colours = ListedColormap([V2, V1, OTHER])
     for column, (title, sizes) in enumerate(_SIZES.items()):
@@ -94,7 +99,7 @@ def borders() -> Figure:
         for row, (kind, found) in enumerate(kinds):
             axes = grid[row, column]
             axes.imshow(
-                found.reshape(_STEPS, _STEPS),
+                found.reshape(count, count),
                 origin="lower",
                 extent=(*EXPONENTS, *EXPONENTS),
                 cmap=colours,

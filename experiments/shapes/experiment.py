@@ -45,7 +45,8 @@ def shapes(human: Path | None = None) -> Experiment:
 def run(context: Context, human: Path | None = None) -> Findings:
     """Search the grids, compare with Table A.2, test the shipped model.
 
-    With `context.limit` the thesis's own hyper-parameters are taken instead of a search.
+    With `context.limit` it is a slice: the thesis's own hyper-parameters instead of a
+    search, and a tenth of the samples beside those of the thesis.
 
     Raises
     ------
@@ -54,10 +55,11 @@ def run(context: Context, human: Path | None = None) -> Findings:
     """
     people = human_labels(human) if human else None
     rng = np.random.default_rng(context.seed)
-    train, more, test = (_named(count, rng) for count in (TRAIN, MORE * TRAIN, TEST))
+    tested, times = (TEST, MORE) if context.limit is None else (TEST // 10, 2)
+    train, more, test = (_named(count, rng) for count in (TRAIN, times * TRAIN, tested))
     results, larger = _compared(context, train, more, test)
     shipped = Figures.of(test[1], probabilities(test[0]).argmax(axis=1))
-    calibrations = _calibrations(rng)
+    calibrations = _calibrations(tested, rng)
     matrices = {each.method: each.test.confusion for each in results}
     matrices["shipped model"] = shipped.confusion
     tables = [table_a_2(results, larger, shipped, TRAIN), parameter_table(results)]
@@ -82,7 +84,7 @@ def run(context: Context, human: Path | None = None) -> Findings:
         (
             Plot(
                 "confusion",
-                f"Confusion on {TEST} held-out superquadrics; shares are of a row.",
+                f"Confusion on {tested} held-out superquadrics; shares are of a row.",
                 confusions(matrices),
             ),
             Plot(
@@ -93,7 +95,7 @@ def run(context: Context, human: Path | None = None) -> Findings:
             Plot(
                 "borders",
                 "Which name goes with which exponents, for three sets of sizes.",
-                borders(),
+                borders(48 if context.limit is None else 12),
             ),
         ),
     )
@@ -132,11 +134,11 @@ def _compared(
     return results, larger
 
 
-def _calibrations(rng: np.random.Generator) -> dict[str, Calibration]:
+def _calibrations(count: int, rng: np.random.Generator) -> dict[str, Calibration]:
     """Return how well the shipped model knows what a viewer would say."""
     held = {}
     for name, draw in (("all kinds", random_superquadrics), ("as in A.1.2", thesis_superquadrics)):
-        parameters = draw(TEST, rng)
+        parameters = draw(count, rng)
         said = names(perceived(parameters, rng))
         held[name] = Calibration.of(said, probabilities(parameters))
     return held

@@ -9,11 +9,15 @@ classifiers learned from count as the nearest that they did.
 
 from __future__ import annotations
 
+from typing import TYPE_CHECKING
+
 import numpy as np
-import onnx
 from numpy.typing import NDArray
 
 from experiments.shapes.dataset import EXPONENTS
+
+if TYPE_CHECKING:
+    import onnx
 
 Array = NDArray[np.float64]
 
@@ -55,6 +59,8 @@ def features(parameters: Array) -> NDArray[np.float32]:
 
 def with_features(network: onnx.ModelProto) -> onnx.ModelProto:
     """Return the network with `features` computed inside; its input is `parameters`."""
-    return onnx.compose.merge_models(
-        onnx.parser.parse_model(_GRAPH), network, io_map=[("features", "features")]
+    from onnx import compose, parser  # of the training extra
+
+    return compose.merge_models(
+        parser.parse_model(_GRAPH), network, io_map=[("features", "features")]
     )

@@ -126,7 +126,7 @@ def objects_table(evaluations: Evaluations, which: str) -> Table:
         )
         for thing in things
     )
-    return Table("objects", f"Cost by object, {which}", ("object", *evaluations), rows)
+    return Table("objects", f"Cost by object, {which}", ("object", *evaluations), rows, detail=True)
 
 
 def meaning(tuned: Evaluations, checked: Evaluations, best: Trial, trials: int) -> str:

@@ -24,7 +24,7 @@ from experiments.dataset.output import CLEAN
 from experiments.framework import Context, ViewSet
 from experiments.framework.plots import png
 from experiments.framework.views import Thing, things_of
-from experiments.tuning import run, study
+from experiments.tuning import run, study, tuning
 from experiments.tuning.boxes import smallest_box
 from experiments.tuning.cost import size_differences, view_cost
 from experiments.tuning.evaluation import tuning_views
@@ -288,7 +288,7 @@ def test_a_small_slice(backend: Client, few_views: ViewSet, tmp_path: Path) -> N
         context = Context(
             Sparge(counting), console, tmp_path / folder, (few_views,), workers=workers
         )
-        return run(context, trials)
+        return tuning(trials).run(context)
 
     findings = found(2)
     headline, parameters, counts, objects = findings.tables
