@@ -86,7 +86,7 @@ class Pipeline:
         run = _Run(self._stages, time.perf_counter() + self._settings.deadline_s)
         scene = await self._perceive(run, request)
         recovered = await self._recover(run, request, scene)
-        decision = await self._decide(run, request, recovered)
+        decision = await self._decide(run, request, scene, recovered)
         chosen = decision.region.primitive_ids if decision.region else ()
         assigned = await run.call(
             FIND_REGION,
@@ -94,6 +94,7 @@ class Pipeline:
                 points=scene.object_points,
                 primitives=recovered.primitives,
                 primitive_ids=chosen,
+                point_primitive=recovered.point_primitive,
             ),
         )
         proposed, grasps = None, np.empty((0, 9))
@@ -162,7 +163,11 @@ class Pipeline:
         )
 
     async def _decide(
-        self, run: _Run, request: GraspRequest, recovered: RecoverResponse
+        self,
+        run: _Run,
+        request: GraspRequest,
+        scene: PerceiveResponse,
+        recovered: RecoverResponse,
     ) -> DecideResponse:
         return await run.call(
             DECIDE,
@@ -171,6 +176,8 @@ class Pipeline:
                 reasoning=request.parameters.reasoning,
                 rule_set=self._settings.rule_set,
                 primitives=recovered.primitives,
+                joints=recovered.joints,
+                plane=scene.plane,
                 explain=request.parameters.explain,
             ),
         )

@@ -21,15 +21,16 @@ _LEAST = 1e-9
 def find_region(request: RegionRequest) -> RegionResponse:
     """Say which primitive each point belongs to, and which points the chosen ones hold.
 
-    A point belongs to the primitive whose surface is nearest along the ray
-    from the primitive's centre: the smallest |radial distance| of Eq. 5.1.
-    Between equals, the primitive that comes first in the request wins.
+    Where the request does not say, a point belongs to the primitive whose surface
+    is nearest along the ray from the primitive's centre: the smallest |radial
+    distance| of Eq. 5.1. Between equals, the primitive that comes first wins.
 
     Raises
     ------
     InvalidInput
         Non-finite points, a primitive without a shape (zero axes, exponents or
-        rotation), two primitives with one id, or a chosen id that is not there.
+        rotation), two primitives with one id, a chosen id that is not there, or
+        assignments that do not fit the points or the primitives.
     """
     check_finite("points", request.points)
     known = _check_primitives(request.primitives)
@@ -40,9 +41,32 @@ def find_region(request: RegionRequest) -> RegionResponse:
             found=missing,
             allowed=known,
         )
-    owner = assign_points(request.points, request.primitives)
+    owner = _given_owner(request, known)
+    if owner is None:
+        owner = assign_points(request.points, request.primitives)
     chosen = np.array(sorted(set(request.primitive_ids)), dtype=np.int16)
     return RegionResponse(point_primitive=owner, point_region=np.isin(owner, chosen))
+
+
+def _given_owner(request: RegionRequest, known: list[int]) -> NDArray[np.int16] | None:
+    owner = request.point_primitive
+    if owner is None:
+        return None
+    if len(owner) != len(request.points):
+        raise InvalidInput(
+            f"point_primitive has {len(owner)} entries for {len(request.points)} points",
+            field="point_primitive",
+            found=len(owner),
+            allowed=len(request.points),
+        )
+    if strangers := sorted(set(np.unique(owner).tolist()) - {NO_PRIMITIVE, *known}):
+        raise InvalidInput(
+            f"point_primitive names {strangers}, but the primitives are {known}",
+            field="point_primitive",
+            found=strangers,
+            allowed=known,
+        )
+    return owner
 
 
 def assign_points(

@@ -56,6 +56,7 @@ class PrimitiveRecovery:
                     zip(remaining, shapes, strict=True)
                 )
             ),
+            method="ems",
             removed_as_overlap=len(parts) - len(remaining),
         )
 

@@ -81,13 +81,16 @@ class RegionRequest(Message):
     primitives: tuple[Primitive, ...]
     primitive_ids: tuple[int, ...]
     """The primitives of the grasp region."""
+    point_primitive: Labels | None = None
+    """Which part each point was cut to, where the recovery knows; None: by distance."""
 
 
 class RegionResponse(Message):
     """One entry per point of the request."""
 
     point_primitive: Labels
-    """Id of the nearest primitive by radial distance (Eq. 5.1), -1 without primitives."""
+    """As the request gave it, or else the nearest primitive by radial distance (Eq. 5.1);
+    -1 for none."""
     point_region: Mask
 
 

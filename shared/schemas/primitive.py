@@ -5,16 +5,30 @@ from __future__ import annotations
 from types import MappingProxyType
 from typing import Annotated, Literal
 
-from pydantic import Field
+import numpy as np
+from numpy.typing import NDArray
+from pydantic import Field, FiniteFloat
 
-from shared.schemas.fields import Direction, Points, SuperquadricVector, Vector3
+from shared.schemas.fields import Direction, Labels, Points, SuperquadricVector, Vector3
 from shared.schemas.route import Route
 from shared.schemas.scene import SupportPlane
 from shared.superquadric import Superquadric
-from shared.wire import Message
+from shared.wire import ArrayField, Message
 
 ShapeClass = Literal["cuboid", "cylinder", "sphere"]
 Preset = Literal["simulation", "real_world"]
+Method = Literal["parts", "ems"]
+"""`parts` cuts the cloud where the object's parts meet, then fits each; `ems` is the thesis's
+hierarchical EMS."""
+
+
+class Deformation(Message):
+    """Taper and bend on top of a superquadric (Solina and Bajcsy 1990), in its own frame."""
+
+    taper: tuple[FiniteFloat, FiniteFloat]
+    """(kx, ky): at height z the cross-section is scaled by 1 + k z / a3 along x and y."""
+    bend: tuple[FiniteFloat, FiniteFloat]
+    """Curvature of the z axis in 1/m, and the direction about z in radians that it bends to."""
 
 
 class Primitive(Message):
@@ -30,6 +44,10 @@ class Primitive(Message):
     """Root mean square radial distance of the points it was fitted to, in millimetres."""
     support: Annotated[int, Field(ge=0)]
     """Number of points it was fitted to."""
+    deformation: Deformation | None = None
+    """Where taper or bend explain the points better; `parameters` are those without them."""
+    holes: Annotated[int, Field(ge=0)] = 0
+    """Openings through the part that the sensor saw the background through, as in a ring."""
 
     @property
     def superquadric(self) -> Superquadric:
@@ -98,6 +116,8 @@ class RecoverRequest(Message):
     viewpoint: Vector3 = (0.0, 0.0, 0.0)
     plane: SupportPlane | None = None
     up: Direction | None = None
+    method: Method | None = None
+    """Without it, the service's own setting; `ems` where `preset` or `parameters` are given."""
     preset: Preset | None = None
     """Parameters of Table A.1; without it, the service's own setting."""
     parameters: EmsParameters | None = None
@@ -105,12 +125,29 @@ class RecoverRequest(Message):
     seed: Annotated[int, Field(ge=0, lt=2**32)] = 0
 
 
+class Joint(Message):
+    """Two parts that meet."""
+
+    primitive_ids: tuple[int, int]
+    position: Vector3
+    """Middle of the border between their points, in metres."""
+
+
 class RecoverResponse(Message):
     """The primitives, largest support first; ids count from 0."""
 
     primitives: tuple[Primitive, ...]
+    method: Method
     removed_as_overlap: int
     """How many primitives Algorithm 2 took away."""
+    point_primitive: Labels | None = None
+    """Id of the part that each point was cut to, -1 for none; None where the method
+    leaves that to the closest point (Eq. 5.1)."""
+    joints: tuple[Joint, ...] = ()
+    """Which parts meet, where the method knows."""
+    covariances: Annotated[NDArray[np.float64], ArrayField("float64", ("P", 11, 11))] | None = None
+    """Of each primitive's e1, e2, a1, a2, a3 (metres), tx, ty, tz (metres) and rotation
+    vector in its own frame (radians), from the Jacobian of the fit."""
 
 
 RECOVER = Route(

@@ -7,8 +7,9 @@ from typing import Annotated, Literal
 from pydantic import Field
 
 from shared.schemas.fields import Name, TaskText
-from shared.schemas.primitive import Primitive
+from shared.schemas.primitive import Joint, Primitive
 from shared.schemas.route import Nothing, Route
+from shared.schemas.scene import SupportPlane
 from shared.wire import Message
 
 Version = Literal["v1", "v2"]
@@ -76,6 +77,10 @@ class DecideRequest(Message):
     reasoning: Version = "v2"
     rule_set: RuleSet = "thesis"
     primitives: tuple[Primitive, ...]
+    joints: tuple[Joint, ...] = ()
+    """Which parts meet, where the recovery knows."""
+    plane: SupportPlane | None = None
+    """What the object stands on, for heights above it."""
     explain: bool = True
 
 

@@ -123,3 +123,26 @@ def test_far_points_and_sharp_primitives_stay_finite() -> None:
         0,
         0,
     ]
+
+
+def test_assignments_that_the_request_brings_are_kept() -> None:
+    given = np.where(np.arange(len(POINTS)) % 2 == 0, 4, -1).astype(np.int16)
+    answer = find_region(
+        RegionRequest(points=POINTS, primitives=BOTH, primitive_ids=(4,), point_primitive=given)
+    )
+    assert np.array_equal(answer.point_primitive, given)
+    assert np.array_equal(answer.point_region, given == 4)
+
+
+@pytest.mark.parametrize(
+    ("given", "message"),
+    [
+        (np.full(3, 4, np.int16), "3 entries"),
+        (np.full(len(POINTS), 7, np.int16), r"names \[7\]"),
+    ],
+)
+def test_assignments_that_do_not_fit_are_refused(given: np.ndarray, message: str) -> None:
+    with pytest.raises(InvalidInput, match=message):
+        find_region(
+            RegionRequest(points=POINTS, primitives=BOTH, primitive_ids=(4,), point_primitive=given)
+        )
