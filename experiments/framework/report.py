@@ -2,7 +2,7 @@
 
 Every experiment keeps `results/<name>/`: a CSV file per table, a PNG per plot,
 `tables.md`, `requests.csv`, and `findings.json`, from which `results/report.html`
-is written anew after every run.
+and `results/results.md` are written anew after every run.
 """
 
 from __future__ import annotations
@@ -16,6 +16,7 @@ from typing import Any
 
 from experiments.framework.experiment import GLOSSARY, Experiment, Findings, Image
 from experiments.framework.plots import png
+from experiments.framework.summary import SUMMARY, summarize
 from experiments.framework.tables import csv_text
 
 FINDINGS = "findings.json"
@@ -76,6 +77,7 @@ def save(results: Path, experiment: Experiment, findings: Findings, run: Mapping
                 "meaning": findings.meaning,
                 "run": dict(run),
                 "tables": [table.html() for table in findings.tables],
+                "markdown": [table.markdown() for table in findings.tables if not table.detail],
                 "files": [f"{table.name}.csv" for table in findings.tables]
                 + [f"{each.name}.{each.kind}" for each in pictures],
                 "plots": [
@@ -89,6 +91,7 @@ def save(results: Path, experiment: Experiment, findings: Findings, run: Mapping
     )
     page = results / REPORT
     _write(page, compose(results))
+    _write(results / SUMMARY, summarize(results, ORDER, FINDINGS))
     return page
 
 

@@ -13,7 +13,12 @@ from experiments.framework import Experiment, Findings, Image, Plot, Share, Tabl
 from experiments.framework.plots import new_figure, share_bars
 from experiments.framework.report import save
 
-RUN = {"date": "2026-01-01", "command": "sparge experiment regions", "seed": "0"}
+RUN = {
+    "date": "2026-01-01",
+    "command": "sparge experiment regions",
+    "seed": "0",
+    "machine": "a computer",
+}
 
 
 def findings(name: str) -> Findings:
@@ -60,6 +65,15 @@ def test_the_page_holds_everything_itself(tmp_path: Path) -> None:
     assert "http" not in re.sub(r"base64,[^\"]*", "", page)
     for text in ("About regions", "It works &amp; how.", "sparge experiment regions", "1/2 (50 %"):
         assert text in page
+
+
+def test_the_summary_holds_the_tables_and_how_they_were_made(tmp_path: Path) -> None:
+    save(tmp_path, experiment("timing"), findings("t"), RUN)
+    save(tmp_path, experiment("regions"), findings("r"), RUN)
+    page = (tmp_path / "results.md").read_text(encoding="utf-8")
+    assert page.index("## About regions") < page.index("## About timing")
+    assert page.count("`sparge experiment regions`, 2026-01-01, a computer") == 2
+    assert page.count("| pouring | 1/2 (50 %") == 2
 
 
 def test_findings_are_kept_as_files(tmp_path: Path) -> None:
