@@ -1,6 +1,6 @@
 # Two commands matter: `make run` and `make test`. `make help` lists the rest.
 .DEFAULT_GOAL := help
-.PHONY: help setup run serve test check experiments lock clean
+.PHONY: help setup run serve test check experiments catalogue lock clean
 
 SAMPLE ?= experiments/samples/bottle.npz
 TASK ?= pouring
@@ -26,10 +26,13 @@ check: setup  ## ruff and mypy --strict
 	@.venv/bin/ruff format --check .
 	@.venv/bin/mypy
 
-EXPERIMENTS ?= regions grasps timing extension robustness shapes tuning demo
+EXPERIMENTS ?= regions primitives grasps timing extension robustness shapes tuning demo
 
 experiments: setup  ## Every table of the thesis beside ours, in results/report.html
 	@for name in $(EXPERIMENTS); do .venv/bin/sparge experiment $$name $(OPTIONS) || exit 1; done
+
+catalogue: setup  ## The contact sheet of all objects, docs/images/catalogue.png
+	@.venv/bin/python -m experiments.contact_sheet
 
 lock: setup  ## Write the dependency locks anew from pyproject.toml
 	@docker/lock.sh

@@ -13,32 +13,38 @@ from shared.errors import InvalidInput
 EXPERIMENTS: Mapping[str, str] = MappingProxyType(
     {
         "regions": "experiments.regions.experiment:REGIONS",
+        "primitives": "experiments.primitives.experiment:PRIMITIVES",
         "grasps": "experiments.grasps.experiment:GRASPS",
         "timing": "experiments.timing.experiment:TIMING",
         "extension": "experiments.extension.experiment:EXTENSION",
         "demo": "experiments.demo.experiment:DEMO",
-        "tuning": "experiments.tuning.experiment:TUNING",
+        "tuning": "experiments.tuning.experiment:tuning",
         "shapes": "experiments.shapes.experiment:shapes",
         "robustness": "experiments.robustness.experiment:ROBUSTNESS",
     }
 )
 """Name -> module:object, in the order of the report."""
-TAKES_HUMAN_LABELS = "shapes"
+TAKES: Mapping[str, str] = MappingProxyType({"human_labels": "shapes", "trials": "tuning"})
+"""Which experiment an option is for; it is made by a function of this option alone."""
 
 
-def experiment(name: str, human_labels: Path | None = None) -> Experiment:
+def experiment(
+    name: str, *, human_labels: Path | None = None, trials: int | None = None
+) -> Experiment:
     """Return an experiment.
 
     Parameters
     ----------
     name : str
     human_labels : Path, optional
-        A file of shapes that people named, for the experiment that takes one.
+        A file of shapes that people named, for `shapes`.
+    trials : int, optional
+        How many sets of parameters are tried, for `tuning`.
 
     Raises
     ------
     InvalidInput
-        There is none of this name, or it takes no such file.
+        There is none of this name, or it does not take what is given.
     """
     if name not in EXPERIMENTS:
         raise InvalidInput(
@@ -47,10 +53,14 @@ def experiment(name: str, human_labels: Path | None = None) -> Experiment:
             found=name,
             allowed=list(EXPERIMENTS),
         )
-    if human_labels is not None and name != TAKES_HUMAN_LABELS:
-        raise InvalidInput(f"only {TAKES_HUMAN_LABELS} takes human labels, not {name}")
+    given = {"human_labels": human_labels, "trials": trials}
+    options = {option: value for option, value in given.items() if value is not None}
+    for option in options:
+        if TAKES[option] != name:
+            words = option.replace("_", " ")
+            raise InvalidInput(f"only {TAKES[option]} takes {words}, not {name}", field=option)
     module, _, attribute = EXPERIMENTS[name].partition(":")
     found = getattr(importlib.import_module(module), attribute)
-    made = found(human_labels) if name == TAKES_HUMAN_LABELS else found
+    made = found(*options.values()) if name in TAKES.values() else found
     assert isinstance(made, Experiment)
     return made

@@ -20,7 +20,7 @@
 :- use_module(explain).
 :- use_module(predicates, [primitive_values/3]).
 :- use_module(relations).
-:- use_module(rule_sets, [rule_module/3, ruled_task/2]).
+:- use_module(rule_sets, [held_if_alone/3, held_together/3, rule_module/3]).
 :- use_module(library(apply)).
 :- use_module(library(lists)).
 :- use_module(library(pairs)).
@@ -30,7 +30,8 @@
 %   Version is v1 or v2.
 
 decision(RuleSet, v1, Task, Decision) :-
-    (   ruled_task(RuleSet, Task)
+    (   rule_module(RuleSet, v1, Module),
+        has_rule(Module, affordTask(_, Task))
     ->  task_decision(RuleSet, Task, Decision)
     ;   Decision = decision{outcome: unknown_task}
     ).
@@ -62,13 +63,31 @@ task_decision(RuleSet, Task, Decision) :-
         Decision = Nothing.put(miss, Miss)
     ;   most_certain_each(Proofs, Best),
         ranked(Best, [ID1-Trace1|Others]),
-        maplist(region_of_proof, [ID1-Trace1|Others], Regions),
+        maplist(region_of_proof, [ID1-Trace1|Others], Singles),
+        (   Others = [_|_],
+            held_together(RuleSet, v1, Task)
+        ->  together(Singles, Together),
+            Regions = [Together|Singles],
+            pairs_values([ID1-Trace1|Others], Traces)
+        ;   Regions = Singles,
+            Traces = [Trace1]
+        ),
         nothing(found, Nothing),
-        Decision = Nothing.put(_{regions: Regions, traces: [Trace1]})
+        Decision = Nothing.put(_{regions: Regions, traces: Traces})
     ).
 
 region_of_proof(ID-Trace, region{parts: [ID], affordance: null, confidence: Certainty}) :-
     Certainty = Trace.certainty.
+
+%   All parts as one region, as certain as the least certain of them.
+
+together(Singles, region{parts: Parts, affordance: Affordance, confidence: Confidence}) :-
+    Singles = [First|_],
+    Affordance = First.affordance,
+    findall(ID, ( member(Single, Singles), member(ID, Single.parts) ), IDs),
+    sort(IDs, Parts),
+    findall(C, ( member(Single, Singles), C = Single.confidence ), Confidences),
+    min_list(Confidences, Confidence).
 
 %   The most certain trace for each key; of equals the first.
 
@@ -112,8 +131,11 @@ affordance_decision(_, _, Decision) :-
     nothing(no_primitives, Decision).
 affordance_decision(RuleSet, Task, Decision) :-
     rule_module(RuleSet, v2, Module),
-    labelled(Module, Labelled),
-    labels(Labelled, Labels),
+    findall(A, ( task_object(A, Task) ; grasp_affordance(A, Task) ; avoided_affordance(A, Task) ),
+            Asked0),
+    sort(Asked0, Asked),
+    labelled(Module, Asked, Labelled),
+    labels(Module, Asked, Labelled, Labels),
     findall(A, task_object(A, Task), Required0),
     sort(Required0, Required),
     exclude(offered(Labelled), Required, Lacking),
@@ -122,24 +144,34 @@ affordance_decision(RuleSet, Task, Decision) :-
         nothing(object_lacks_affordance, Nothing),
         Chosen = Nothing.put(_{lacking: Lacking, miss: Miss})
     ;   maplist(best_of(Labelled), Required, Provided),
-        choose(Module, Task, Labelled, Provided, Chosen)
+        choose(RuleSet, Module, Task, Labelled, Provided, Chosen)
     ),
     Decision = Chosen.put(labels, Labels).
 
-%   Every part with every affordance that it has: (Affordance-ID)-Trace.
+%   Every part with the affordances that the task speaks of and the part has, proved:
+%   (Affordance-ID)-Trace.
 
-labelled(Module, Labelled) :-
+labelled(Module, Asked, Labelled) :-
     findall((Affordance-ID)-Trace,
-            proof(Module, partAffordance(ID, Affordance), Trace),
+            ( member(Affordance, Asked), proof(Module, partAffordance(ID, Affordance), Trace) ),
             Proofs),
     most_certain_each(Proofs, Labelled).
 
-labels(Labelled, Labels) :-
-    findall(ID, primitive_values(ID, _, _), IDs),
-    maplist(labels_of(Labelled), IDs, Labels).
+%   Every part with all its affordances. Those that the task does not speak of need no
+%   proof that can be shown.
 
-labels_of(Labelled, ID, label{part: ID, affordances: Affordances}) :-
-    findall(A, member((A-ID)-_, Labelled), Affordances).
+labels(Module, Asked, Labelled, Labels) :-
+    findall(ID-Affordance, member((Affordance-ID)-_, Labelled), Shown),
+    findall(ID-Affordance,
+            ( holds(Module, partAffordance(ID, Affordance)), \+ memberchk(Affordance, Asked) ),
+            Others),
+    append(Shown, Others, All),
+    sort(All, Pairs),
+    findall(ID, primitive_values(ID, _, _), IDs),
+    maplist(labels_of(Pairs), IDs, Labels).
+
+labels_of(Pairs, ID, label{part: ID, affordances: Affordances}) :-
+    findall(A, member(ID-A, Pairs), Affordances).
 
 offered(Labelled, Affordance) :-
     memberchk((Affordance-_)-_, Labelled).
@@ -158,7 +190,7 @@ closest_to_label(Module, Affordances, Miss) :-
 %   What may be held: a part with a grasp affordance, or any part if the task names
 %   none; and no part with an affordance to avoid.
 
-choose(Module, Task, Labelled, Provided, Decision) :-
+choose(RuleSet, Module, Task, Labelled, Provided, Decision) :-
     findall(A, grasp_affordance(A, Task), Graspable0),
     findall(A, avoided_affordance(A, Task), Avoided0),
     sort(Graspable0, Graspable),
@@ -166,7 +198,10 @@ choose(Module, Task, Labelled, Provided, Decision) :-
     findall(Grip, grip(Graspable, Labelled, Grip), Grips),
     partition(occupied(Labelled, Avoided), Grips, Occupied, Free),
     (   Free = [_|_]
-    ->  found(Module, Task, Graspable, Avoided, Provided, Free, Decision)
+    ->  found(RuleSet, Module, Task, Graspable, Avoided, Provided, Free, Decision)
+    ;   Occupied = [_|_],
+        held_if_alone(RuleSet, v2, Task)
+    ->  found_alone(RuleSet, Module, Task, Graspable, Avoided, Provided, Occupied, Decision)
     ;   Occupied = [_|_]
     ->  nothing(every_part_avoided, Nothing),
         least_avoided(Task, Labelled, Avoided, Occupied, Miss),
@@ -193,19 +228,48 @@ occupied(Labelled, Avoided, grip(ID, _, _)) :-
 %   Without a grasp affordance all the parts together are the region; otherwise
 %   each is one of its own.
 
-found(Module, Task, [], Avoided, Provided, Grips, Decision) :-
+found(_, Module, Task, [], Avoided, Provided, Grips, Decision) :-
     !,
     findall(ID, member(grip(ID, _, _), Grips), IDs),
     option(Module, Task, Avoided, Provided, IDs, null, [], Region, Relation),
     decided(Provided, [], [Region], Relation, Decision).
-found(Module, Task, _, Avoided, Provided, Grips, Decision) :-
+found(RuleSet, Module, Task, _, Avoided, Provided, Grips, Decision) :-
     findall(Region-option(Relation, Traces),
             ( member(grip(ID, Affordance, Traces), Grips),
               option(Module, Task, Avoided, Provided, [ID], Affordance, Traces, Region, Relation) ),
             Options),
-    best_regions(Options, [Region-option(Relation, Traces)|Others]),
+    best_regions(Options, Best),
+    (   Best = [_, _|_],
+        held_together(RuleSet, v2, Task)
+    ->  all_together(Module, Task, Avoided, Provided, Best, [Region-option(Relation, Traces)|Others])
+    ;   Best = [Region-option(Relation, Traces)|Others]
+    ),
     pairs_keys(Others, Alternatives),
     decided(Provided, Traces, [Region|Alternatives], Relation, Decision).
+
+all_together(Module, Task, Avoided, Provided, Best, [Region-option(Relation, Traces)|Best]) :-
+    findall(ID, ( member(Single-_, Best), member(ID, Single.parts) ), IDs0),
+    sort(IDs0, IDs),
+    findall(Trace, ( member(_-option(_, Each), Best), member(Trace, Each) ), Traces),
+    Best = [First-_|_],
+    option(Module, Task, Avoided, Provided, IDs, First.affordance, Traces, Region, Relation).
+
+%   Nothing but parts that the task would rather leave free: they are held, and a
+%   condition says so.
+
+found_alone(RuleSet, Module, Task, Graspable, Avoided, Provided, Grips, Decision) :-
+    found(RuleSet, Module, Task, Graspable, [], Provided, Grips, Found),
+    Found.traces = [Relation|Labels],
+    findall(ID, member(grip(ID, _, _), Grips), IDs),
+    findall(Condition,
+            ( member(A, Avoided),
+              format(string(Text), "held_if_alone(~q)", [Task]),
+              Condition = m{predicate: Text, part: null, holds: true, kind: alone, measured: IDs,
+                            required: [A], margin: null, unit: null, support: null, excess: 0.0,
+                            outside: []} ),
+            Conditions),
+    append(Relation.conditions, Conditions, All),
+    Decision = Found.put(traces, [Relation.put(conditions, All)|Labels]).
 
 decided(Provided, GraspTraces, Regions, Relation, Decision) :-
     findall(Trace, member(provided(_, _, Trace), Provided), ProvidedTraces),
@@ -320,22 +384,3 @@ avoid_condition(Task, Affordance, ID, Holds, Support, Distance, Because, Conditi
     Condition = m{predicate: Text, part: ID, holds: Holds, kind: avoided, measured: Affordance,
                   required: [Affordance], margin: Distance, unit: Unit, support: Support,
                   excess: 0.0, outside: [], because: Because}.
-
-failing(Conditions, Failing) :-
-    include(fails, Conditions, Failing).
-
-fails(Condition) :-
-    false == Condition.holds.
-
-%   The condition with the largest excess, or the largest doubt; the first of
-%   equals.
-
-extreme(Measure, Conditions, Extreme) :-
-    map_list_to_pairs(negative(Measure), Conditions, Pairs),
-    keysort(Pairs, [_-Extreme|_]).
-
-negative(excess, Condition, Key) :-
-    Key is -Condition.excess.
-negative(doubt, Condition, Support) :-
-    Support0 = Condition.support,
-    ( number(Support0) -> Support = Support0 ; Support = 1.0 ).

@@ -8,27 +8,49 @@
     attempt/3   tries a rule on every choice of parts and lets no condition cut
                 the rest off; it serves to find the nearest miss.
 
-    A goal that looks up a part (primitive_values) chooses; a goal with clauses
-    of its own in the rule module is entered; everything else is a condition.
+    A goal that looks up a part (primitive_values, part) chooses; a goal with
+    clauses of its own, in the rule module or in a file beside it, is entered;
+    everything else is a condition. The negation of a goal that would be entered
+    is a condition too; the reason is the nearest miss of that goal.
+
+    Rules that are learned at run time (learned.pl) are proved beside those of a
+    module: the hook further_rule/6 gives them.
 */
 
 :- module(explain,
           [ prepare_rules/2,            % +Module, +Title
             rule_about/3,               % ?Module, ?Head, ?Line
+            has_rule/2,                 % +Module, +Head
+            called_rule/3,              % +Module, ?Head, -Called
+            as_written/3,               % +Goal, +Names, -Text
             rule_problem/2,             % +Module, -Problem
+            holds/2,                    % +Module, ?Head
             proof/3,                    % +Module, ?Head, -Trace
             attempt/3,                  % +Module, ?Head, -Trace
             nearest/2,                  % +Traces, -Nearest
-            certainty/2                 % +Conditions, -Certainty
+            certainty/2,                % +Conditions, -Certainty
+            with_memory/1,              % :Goal
+            failing/2,                  % +Conditions, -Failing
+            extreme/3                   % +Measure, +Conditions, -Extreme
           ]).
 :- use_module(measurement).
 :- use_module(predicates, [bound/1]).
+:- use_module(quantities, [known_quantity/1, quantity_part/2]).
 :- use_module(library(apply)).
 :- use_module(library(lists)).
 :- use_module(library(option)).
 :- use_module(library(pairs)).
 
 :- dynamic prepared/6.          % Module, Head, Steps, Parts, Title, Line
+:- dynamic remembering/0, remembered/4. % Module, Goal, Holds, Denied
+:- meta_predicate with_memory(0).
+:- dynamic defined_beside/3.    % Module, General, Other: a goal whose rules lie in Other
+
+%   further_rule(+Module, ?Head, -Steps, -Parts, -Title, -In): another rule that counts
+%   beside those of Module; its goals are called in the module In.
+
+:- multifile further_rule/6.
+:- dynamic further_rule/6.
 
                 /*******************************
                 *        READING RULES         *
@@ -41,6 +63,7 @@
 
 prepare_rules(Module, Title) :-
     retractall(prepared(Module, _, _, _, _, _)),
+    retractall(defined_beside(Module, _, _)),
     forall(rule_clause(Module, Head, Body, Ref),
            prepare_rule(Module, Title, Head, Body, Ref)).
 
@@ -100,6 +123,7 @@ owners(_, Owners, Owners).
 
 owned_by(ID, Variable, [owner(Variable, ID)|Owners], Owners).
 
+finds_part(part(ID), ID).
 finds_part(primitive_values(ID, _, _), ID).
 finds_part(primitive_values(ID, _, _, _, _), ID).
 
@@ -115,7 +139,7 @@ part_variable(Owners, Name = Variable, Parts, Tail) :-
     ;   Parts = Tail
     ).
 
-%   Steps of a body: find(Goal), enter(Goal), test(Goal, ID, Text).
+%   Steps of a body: find(Goal), enter(Goal), deny(Goal, ID, Text), test(Goal, ID, Text).
 
 steps((A, B), Module, Owners, Names, Steps, Tail) :-
     !,
@@ -126,15 +150,39 @@ steps(Goal, _, _, _, [find(Goal)|Tail], Tail) :-
     finds_part(Goal, _),
     !.
 steps(Goal, Module, _, _, [enter(Goal)|Tail], Tail) :-
-    callable(Goal),
-    functor(Goal, Name, Arity),
-    functor(General, Name, Arity),
-    \+ predicate_property(Module:General, imported_from(_)),
-    predicate_property(Module:General, number_of_clauses(_)),
+    has_home(Goal, Module),
     !.
+steps(\+ Goal, Module, Owners, Names, [deny(Goal, ID, Text)|Tail], Tail) :-
+    has_home(Goal, Module),
+    !,
+    about(Goal, Owners, ID),
+    as_written(Goal, Names, Positive),
+    string_concat("\\+ ", Positive, Text).
 steps(Goal, _, Owners, Names, [test(Goal, ID, Text)|Tail], Tail) :-
     about(Goal, Owners, ID),
     as_written(Goal, Names, Text).
+
+%   Goal has clauses in Module or in a file beside it; the latter is noted.
+
+has_home(Goal, Module) :-
+    callable(Goal),
+    functor(Goal, Name, Arity),
+    functor(General, Name, Arity),
+    (   predicate_property(Module:General, imported_from(Other))
+    ->  beside(Module, Other),
+        (   defined_beside(Module, General, Other)
+        ->  true
+        ;   assertz(defined_beside(Module, General, Other))
+        )
+    ;   Other = Module
+    ),
+    predicate_property(Other:General, number_of_clauses(_)).
+
+beside(Module, Other) :-
+    module_property(Module, file(File)),
+    module_property(Other, file(OtherFile)),
+    file_directory_name(File, Directory),
+    file_directory_name(OtherFile, Directory).
 
 about(Goal, Owners, ID) :-
     term_variables(Goal, Variables),
@@ -197,6 +245,13 @@ rule_problem(Module, Problem) :-
         nonvar(Bound),
         \+ bound(Bound),
         format(string(What), "has a bound that is not three numbers: ~w", [Text])
+    ;   ( Simple = at_least(Quantity, Bound) ; Simple = at_most(Quantity, Bound) ),
+        (   \+ known_quantity(Quantity),
+            format(string(What), "asks for a quantity that is not known: ~w", [Text])
+        ;   nonvar(Bound),
+            \+ number(Bound),
+            format(string(What), "has a bound that is not a number: ~w", [Text])
+        )
     ),
     format(string(Problem), "line ~w: the rule for ~p ~w", [Line, Head, What]).
 
@@ -207,9 +262,50 @@ conjunct((A -> B), Goal) :- !, ( conjunct(A, Goal) ; conjunct(B, Goal) ).
 conjunct(\+ A, Goal) :- !, conjunct(A, Goal).
 conjunct(Goal, Goal).
 
+%!  has_rule(+Module, +Head) is semidet.
+%
+%   There is a rule with this head, of Module or learned.
+
+has_rule(Module, Head) :-
+    once(rule(Module, Head, _, _, _, _)).
+
+%!  called_rule(+Module, ?Head, -Called) is nondet.
+%
+%   The rule with this head in Module enters rules with the head Called.
+
+called_rule(Module, Head, Called) :-
+    prepared(Module, Head, Steps, _, _, _),
+    member(enter(Called), Steps).
+
+rule(Module, Head, Steps, Parts, Title, Module) :-
+    prepared(Module, Head, Steps, Parts, Title, _).
+rule(Module, Head, Steps, Parts, Title, In) :-
+    further_rule(Module, Head, Steps, Parts, Title, In).
+rule(Module, Head, Steps, Parts, Title, Other) :-
+    defined_beside(Module, Head, Other),
+    prepared(Other, Head, Steps, Parts, Title, _).
+
                 /*******************************
                 *           PROVING            *
                 *******************************/
+
+%!  holds(+Module, ?Head) is nondet.
+%
+%   Head holds by a rule of Module, as in proof/3, but nothing is measured.
+
+holds(Module, Head) :-
+    rule(Module, Head, Steps, _, _, In),
+    holding(Steps, In).
+
+holding([], _).
+holding([Step|Steps], Module) :-
+    step_holds(Step, Module),
+    holding(Steps, Module).
+
+step_holds(find(Goal), Module) :- call(Module:Goal).
+step_holds(enter(Goal), Module) :- holds(Module, Goal).
+step_holds(deny(Goal, _, _), Module) :- \+ holds(Module, Goal).
+step_holds(test(Goal, _, _), Module) :- call(Module:Goal).
 
 %!  proof(+Module, ?Head, -Trace) is nondet.
 %
@@ -228,16 +324,29 @@ attempt(Module, Head, Trace) :-
     tried(Module, Head, softly, _, Trace).
 
 tried(Module, Head, Manner, Holds, Trace) :-
-    prepared(Module, Head, Steps, Parts, Title, _),
-    run(Steps, Manner, Module, Conditions, []),
+    rule(Module, Head, Steps, Parts, Title, In),
+    run(Steps, Manner, In, Conditions, []),
     (   exclude(holds, Conditions, []) -> Holds = true ; Holds = false ),
-    Head =.. [_, Part, Subject],
+    subject(Head, Part, Subject),
     atomic_list_concat([Title, :, Subject], Rule),
     include(bound_part, Parts, Bound),
     dict_pairs(Bindings, bindings, Bound),
     certainty(Conditions, Certainty),
     Trace = trace{rule: Rule, part: Part, holds: Holds, bindings: Bindings, conditions: Conditions,
                   certainty: Certainty}.
+
+%   What a rule is about: affordTask(ID, Task) about Task, handle(ID) about handle.
+
+subject(Head, Part, Subject) :-
+    Head =.. [_, Part, Subject],
+    atom(Subject),
+    !.
+subject(Head, Part, Name) :-
+    Head =.. [Name|Arguments],
+    (   Arguments = [Part|_]
+    ->  true
+    ;   Part = null
+    ).
 
 holds(Condition) :-
     true == Condition.holds.
@@ -253,8 +362,16 @@ run([Step|Steps], Manner, Module, Conditions, Tail) :-
 step(find(Goal), _, Module, Conditions, Conditions) :-
     call(Module:Goal).
 step(enter(Goal), Manner, Module, Conditions, Tail) :-
-    prepared(Module, Goal, Steps, _, _, _),
-    run(Steps, Manner, Module, Conditions, Tail).
+    rule(Module, Goal, Steps, _, _, In),
+    run(Steps, Manner, In, Conditions, Tail).
+step(deny(Goal, ID, Text), Manner, Module, [Condition|Tail], Tail) :-
+    denied(Module, Goal, Holds, Denied),
+    (   Manner == strictly
+    ->  Holds == true
+    ;   true
+    ),
+    denied_part(ID, Goal, Part),
+    Condition = Denied.put(_{predicate: Text, part: Part, holds: Holds}).
 step(test(Goal, ID, Text), strictly, Module, [Condition|Tail], Tail) :-
     call(Module:Goal),
     condition(Goal, ID, Text, true, Condition).
@@ -267,8 +384,94 @@ step(test(Goal, ID, Text), softly, Module, [Condition|Tail], Tail) :-
 
 condition(Goal, ID, Text, Holds, Condition) :-
     measurement(Goal, ID, Measurement),
-    (   integer(ID) -> Part = ID ; Part = null ),
+    (   integer(ID) -> Part = ID ; goal_part(Goal, Part) -> true ; Part = null ),
     Condition = Measurement.put(_{predicate: Text, part: Part, holds: Holds}).
+
+goal_part(at_least(Quantity, _), ID) :- quantity_part(Quantity, ID).
+goal_part(at_most(Quantity, _), ID) :- quantity_part(Quantity, ID).
+goal_part(meets(ID, _), ID) :- integer(ID).
+
+%   A negation is as certain as what it denies is not: by the nearest miss if it
+%   holds, by the surest proof if it fails. Its margin is that of the condition which
+%   decides.
+
+denied(Module, Goal, Holds, Denied) :-
+    (   remembering
+    ->  (   remembered(Module, Asked, Holds0, Denied0),
+            Asked =@= Goal
+        ->  Holds = Holds0, Denied = Denied0
+        ;   denied_now(Module, Goal, Holds, Denied),
+            assertz(remembered(Module, Goal, Holds, Denied))
+        )
+    ;   denied_now(Module, Goal, Holds, Denied)
+    ).
+
+%!  with_memory(:Goal) is semidet.
+%
+%   Prove Goal once. What was denied on the way is remembered until it ends, for
+%   the parts do not change meanwhile: many rules deny the same.
+
+with_memory(Goal) :-
+    setup_call_cleanup(
+        assertz(remembering),
+        once(Goal),
+        ( retractall(remembering), retractall(remembered(_, _, _, _)) )).
+
+denied_now(Module, Goal, Holds, Denied) :-
+    findall(Doubt-Trace,
+            ( proof(Module, Goal, Trace), Doubt is 1 - Trace.certainty ),
+            Proofs),
+    (   Proofs == []
+    ->  Holds = true,
+        findall(Trace, attempt(Module, Goal, Trace), Attempts),
+        (   nearest(Attempts, Nearest)
+        ->  Support is 1 - Nearest.certainty,
+            failing(Nearest.conditions, Failing),
+            extreme(excess, Failing, Because)
+        ;   Support = 1.0, Because = null
+        ),
+        Excess = 0.0, Sign = 1
+    ;   Holds = false,
+        keysort(Proofs, [Support-Surest|_]),
+        (   extreme(doubt, Surest.conditions, Because)
+        ->  true
+        ;   Because = null
+        ),
+        Excess is 3 * (1 - Support), Sign = -1
+    ),
+    (   is_dict(Because),
+        Found = Because.margin,
+        number(Found)
+    ->  Margin is Sign * abs(Found), Unit = Because.unit
+    ;   Margin = null, Unit = null
+    ),
+    subject(Goal, _, About),
+    Denied = m{kind: absent, measured: About, required: null, margin: Margin, unit: Unit,
+               support: Support, excess: Excess, outside: [], because: Because}.
+
+denied_part(ID, _, ID) :- integer(ID), !.
+denied_part(_, Goal, ID) :- subject(Goal, ID, _), integer(ID), !.
+denied_part(_, _, null).
+
+%!  failing(+Conditions, -Failing) is det.
+
+failing(Conditions, Failing) :-
+    exclude(holds, Conditions, Failing).
+
+%!  extreme(+Measure, +Conditions, -Extreme) is semidet.
+%
+%   The condition with the largest excess, or the largest doubt; the first of
+%   equals.
+
+extreme(Measure, Conditions, Extreme) :-
+    map_list_to_pairs(negative(Measure), Conditions, Pairs),
+    keysort(Pairs, [_-Extreme|_]).
+
+negative(excess, Condition, Key) :-
+    Key is -Condition.excess.
+negative(doubt, Condition, Support) :-
+    Support0 = Condition.support,
+    ( number(Support0) -> Support = Support0 ; Support = 1.0 ).
 
 %!  certainty(+Conditions, -Certainty) is det.
 %

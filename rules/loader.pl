@@ -55,7 +55,7 @@ loaded(File, Complaints) :-
 complaints(File, Messages) :-
     setup_call_cleanup(
         ( retractall(heard(_)), assertz(listening) ),
-        catch(load_files(user:File, [if(changed), must_be_module(true), encoding(utf8)]),
+        catch(load_files(user:File, [if(changed), must_be_module(true), imports([]), encoding(utf8)]),
               Error, print_message(error, Error)),
         retractall(listening)),
     findall(Message, retract(heard(Message)), Messages).

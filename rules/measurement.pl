@@ -8,6 +8,10 @@
         dimensions   2 mm (depth noise) plus 10 % of the bound (recovery)
         ratio        15 % of the bound (two dimensions, each 10 %)
         volume       20 % (three dimensions, each 10 %)
+        quantity     (quantities.pl) 2 mm, or what the part's fit leaves if that
+                     is more, plus 10 % for a length, 15 % for a ratio, 20 % for
+                     a volume, 10 degrees for an angle, and a third of a count
+                     about the step between two counts
 
     and, for a shape class, the classifier's own probability. These spreads are
     assumptions, not a calibration; they order parts and say which condition was
@@ -19,6 +23,7 @@
 
 :- module(measurement, [measurement/3]).        % +Goal, +ID, -Measurement
 :- use_module(predicates).
+:- use_module(quantities).
 :- use_module(library(apply)).
 :- use_module(library(lists)).
 
@@ -59,6 +64,22 @@ measure(Found == Class, ID, M) :-
 measure((A ; B), ID, M) :-
     alternatives((A ; B), Found, Classes),
     measure_shape(Found, Classes, ID, M).
+measure(at_least(Quantity, Bound), _, M) :-
+    quantity(Quantity, Value, Unit),
+    number(Bound),
+    Margin is Value - Bound,
+    measure_quantity(at_least, Quantity, Value, Bound, Margin, Unit, M).
+measure(at_most(Quantity, Bound), _, M) :-
+    quantity(Quantity, Value, Unit),
+    number(Bound),
+    Margin is Bound - Value,
+    measure_quantity(at_most, Quantity, Value, Bound, Margin, Unit, M).
+measure(meets(A, B), _, M) :-
+    integer(A),
+    integer(B),
+    ( meets(A, B) -> Excess = 0.0 ; Excess = 1.0 ),
+    M = m{kind: meets, measured: [A, B], required: null, margin: null, unit: null,
+          support: null, excess: Excess, outside: []}.
 measure(A \= B, _, M) :-
     integer(A),
     integer(B),
@@ -143,6 +164,41 @@ measure_shape(Found, Classes, ID, M) :-
     ),
     M = m{kind: shape, measured: Found, required: Classes, margin: null, unit: null,
           support: Support, excess: Excess, outside: []}.
+
+%   Quantities: outside tells which, in words of the quantity.
+
+measure_quantity(Kind, Quantity, Value, Bound, Margin, Unit, M) :-
+    quantity_spread(Unit, Quantity, Bound, Spread),
+    ( Unit == count -> Slack is Margin + 0.5 ; Slack = Margin ),
+    Spreads is Slack / Spread,
+    normal(Spreads, Support),
+    ( Margin < 0 -> Excess is max(0.0, -Spreads) ; Excess = 0.0 ),
+    described(Quantity, Described),
+    M = m{kind: Kind, measured: Value, required: Bound, margin: Margin, unit: Unit,
+          support: Support, excess: Excess, outside: [], quantity: Described}.
+
+quantity_spread(m, Quantity, Bound, Spread) :-
+    (   quantity_part(Quantity, ID),
+        residual(ID, Residual)
+    ->  true
+    ;   Residual = 0.0
+    ),
+    Spread is max(0.002, Residual) + 0.1 * abs(Bound).
+quantity_spread(ratio, _, Bound, Spread) :-
+    Spread is 0.02 + 0.15 * abs(Bound).
+quantity_spread(m3, _, Bound, Spread) :-
+    Spread is max(1.0e-9, 0.2 * abs(Bound)).
+quantity_spread(deg, _, _, 10.0).
+quantity_spread(count, _, _, 0.33).
+
+%   A quantity as data: its name and parts, or two of them for a share.
+
+described(One / Other, [share, First, Second]) :-
+    !,
+    described(One, First),
+    described(Other, Second).
+described(Quantity, [Name|Parts]) :-
+    Quantity =.. [Name|Parts].
 
 on_a_scale(Kind, Found, Bound, Margin, Unit, Spread, M) :-
     Spreads is Margin / Spread,

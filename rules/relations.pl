@@ -21,6 +21,7 @@
             grasp_affordance/2,         % ?Affordance, ?Task
             avoided_affordance/2,       % ?Affordance, ?Task
             with_knowledge/2,           % +Knowledge, :Goal
+            knowledge_in_use/1,         % -Knowledge
             learn/4,                    % +Knowledge, +Subject, +Property, +Object
             forget/2                    % +Knowledge, ?Subject
           ]).
@@ -34,7 +35,7 @@
 %   A statement of the knowledge base in use.
 
 triple(Subject, Property, Object) :-
-    nb_current(knowledge_in_use, Knowledge),
+    knowledge_in_use(Knowledge),
     stored(Subject, Property, Object, Knowledge).
 
 %!  task(?Task) is nondet.
@@ -72,6 +73,11 @@ with_knowledge(Knowledge, Goal) :-
         nb_setval(knowledge_in_use, Knowledge),
         once(Goal),
         nb_delete(knowledge_in_use)).
+
+%!  knowledge_in_use(-Knowledge) is semidet.
+
+knowledge_in_use(Knowledge) :-
+    nb_current(knowledge_in_use, Knowledge).
 
 %!  learn(+Knowledge, +Subject, +Property, +Object) is det.
 %

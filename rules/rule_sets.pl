@@ -1,13 +1,23 @@
 /*  Loading rule sets.
 
-    A rule set is a folder with version1.pl (module <set>_version1, one
-    affordTask/2 clause per task) and version2.pl (module <set>_version2, one
-    partAffordance/2 clause per affordance).
+    A rule set is a folder with version1.pl (module <set>_version1,
+    affordTask/2 clauses for tasks) and version2.pl (module <set>_version2,
+    partAffordance/2 clauses for affordances). Both may use other files of that
+    folder; their clauses are part of the proofs.
+
+    Beside these, a version may say about a task, as clauses of its own:
+
+        held_together(Task)     all the parts that may be held for Task are one
+                                region; without it each is a region of its own
+        held_if_alone(Task)     (Version 2) parts that Task avoids are held all
+                                the same when the object offers nothing else
 */
 
 :- module(rule_sets,
           [ load_rule_set/2,            % +Directory, +RuleSet
             rule_module/3,              % +RuleSet, +Version, -Module
+            held_together/3,            % +RuleSet, +Version, +Task
+            held_if_alone/3,            % +RuleSet, +Version, +Task
             ruled_task/2,               % +RuleSet, ?Task
             ruled_affordance/2          % +RuleSet, ?Affordance
           ]).
@@ -36,13 +46,32 @@ load_version(Directory, RuleSet, Version) :-
     ),
     atomic_list_concat([RuleSet, /, Base], Title),
     prepare_rules(Module, Title),
+    prepare_beside(Directory, RuleSet, Module),
     findall(Problem,
-            ( rule_problem(Module, What), format(string(Problem), "~w: ~w", [File, What]) ),
+            ( ( Checked = Module ; file_beside(Directory, RuleSet, Module, Checked, _) ),
+              rule_problem(Checked, What), format(string(Problem), "~w: ~w", [File, What]) ),
             Problems),
     (   Problems == []
     ->  true
     ;   throw(bad_rules(Problems))
     ).
+
+%   Other files of the folder that the module uses.
+
+prepare_beside(Directory, RuleSet, Module) :-
+    forall(file_beside(Directory, RuleSet, Module, Other, Title), prepare_rules(Other, Title)).
+
+file_beside(Directory, RuleSet, Module, Other, Title) :-
+    setof(Imported,
+          Head^( predicate_property(Module:Head, imported_from(Imported)) ),
+          Imports),
+    member(Other, Imports),
+    module_property(Other, file(File)),
+    atomic_list_concat([Directory, /, RuleSet, /], Prefix),
+    atom_concat(Prefix, _, File),
+    file_base_name(File, Base),
+    file_name_extension(Name, _, Base),
+    atomic_list_concat([RuleSet, /, Name], Title).
 
 version_file(v1, version1).
 version_file(v2, version2).
@@ -52,6 +81,22 @@ version_file(v2, version2).
 rule_module(RuleSet, Version, Module) :-
     version_file(Version, Base),
     atomic_list_concat([RuleSet, '_', Base], Module).
+
+%!  held_together(+RuleSet, +Version, +Task) is semidet.
+
+held_together(RuleSet, Version, Task) :-
+    says(RuleSet, Version, held_together(Task)).
+
+%!  held_if_alone(+RuleSet, +Version, +Task) is semidet.
+
+held_if_alone(RuleSet, Version, Task) :-
+    says(RuleSet, Version, held_if_alone(Task)).
+
+says(RuleSet, Version, Statement) :-
+    rule_module(RuleSet, Version, Module),
+    rule_about(Module, Statement, _),
+    !,
+    call(Module:Statement).
 
 %!  ruled_task(+RuleSet, ?Task) is nondet.
 %

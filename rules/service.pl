@@ -8,9 +8,14 @@
 
 :- module(service, [answer/2]).         % +Request, -Answer
 :- use_module(decide).
+:- use_module(explain, [called_rule/3, with_memory/1]).
+:- use_module(learned).
 :- use_module(predicates).
+:- use_module(quantities).
 :- use_module(relations).
+:- use_module(rule_file).
 :- use_module(rule_sets).
+:- use_module(vocabulary, [words/1]).
 :- use_module(library(apply)).
 :- use_module(library(http/json)).
 :- use_module(library(lists)).
@@ -60,7 +65,8 @@ message_to_codes_safely(Error, Message) :-
                 *          OPERATIONS          *
                 *******************************/
 
-%   load: read a rule set; says which tasks and affordances it has rules for.
+%   load: read a rule set; says which tasks and affordances it has rules for, and which
+%   affordances' rules ask for another affordance.
 
 operation(load, Asked, Result) :-
     load_rule_set(Asked.directory, Asked.rule_set),
@@ -68,18 +74,47 @@ operation(load, Asked, Result) :-
     findall(Affordance, ruled_affordance(Asked.rule_set, Affordance), Affordances0),
     sort(Tasks0, Tasks),
     sort(Affordances0, Affordances),
-    Result = rules{tasks: Tasks, affordances: Affordances}.
+    rule_module(Asked.rule_set, v2, Module),
+    findall([Affordance, Other],
+            called_rule(Module, partAffordance(_, Affordance), partAffordance(_, Other)),
+            Uses),
+    Result = rules{tasks: Tasks, affordances: Affordances, uses: Uses}.
 
-%   learn and forget: statements of a knowledge base.
+%   change: what a knowledge base forgets (everything, subjects of statements, rules) and
+%   what it learns, in one step.
 
-operation(learn, Asked, learned{}) :-
+operation(change, Asked, changed{}) :-
     Knowledge = Asked.knowledge,
+    (   Asked.clear == true
+    ->  forget(Knowledge, _),
+        unteach_rule(Knowledge, _)
+    ;   forall(member(Subject, Asked.subjects), forget(Knowledge, Subject)),
+        forall(member(Name, Asked.names), unteach_rule(Knowledge, Name))
+    ),
     forall(member([Subject, Property, Object], Asked.triples),
-           learn(Knowledge, Subject, Property, Object)).
-operation(forget, Asked, forgotten{}) :-
-    forget(Asked.knowledge, Asked.subject).
-operation(forget_all, Asked, forgotten{}) :-
-    forget(Asked.knowledge, _).
+           learn(Knowledge, Subject, Property, Object)),
+    forall(member(Rule, Asked.rules), teach_rule(Knowledge, Rule)).
+
+%   clauses: the named learned rules as Prolog text, by name; all of them if none is named.
+
+operation(clauses, Asked, Clauses) :-
+    Names = Asked.names,
+    findall(Name-Text,
+            ( ( Names == [] -> true ; member(Name, Names) ),
+              learned_clause(Asked.knowledge, Name, Text) ),
+            Pairs),
+    dict_pairs(Clauses, clauses, Pairs).
+
+%   check_file: what is wrong with a file of rules, and what it has rules for.
+
+operation(check_file, Asked, checked{problems: Problems, rules: Rules}) :-
+    rule_file_problems(Asked.file, Problems, Found),
+    findall([Name, Line], member(Name-Line, Found), Rules).
+
+%   vocabulary: the words of rules that are written as data.
+
+operation(vocabulary, _, vocabulary{words: Words}) :-
+    words(Words).
 
 %   decide: the part to hold.
 
@@ -87,19 +122,29 @@ operation(decide, Asked, Result) :-
     setup_call_cleanup(
         true,
         ( maplist(state, Asked.parts),
+          state_lying(Asked),
           with_knowledge(Asked.knowledge, bounded_decision(Asked, Decision)),
           facts(Asked, Facts) ),
-        withdraw_parts),
+        ( withdraw_parts, withdraw_layout )),
     Result = Decision.put(facts, Facts).
 
 state(Part) :-
     state_part(Part.id, Part.position, Part.dimensions, Part.exponents, Part.shape,
                Part.probability).
 
+%   A request without parts, or from before there was a layout, states none.
+
+state_lying(Asked) :-
+    (   get_dict(layout, Asked, Layout),
+        is_dict(Layout)
+    ->  state_layout(Layout)
+    ;   true
+    ).
+
 bounded_decision(Asked, Decision) :-
     Limit = Asked.max_inferences,
-    call_with_inference_limit(decision(Asked.rule_set, Asked.version, Asked.task, Decision),
-                              Limit, Outcome),
+    Goal = with_memory(decision(Asked.rule_set, Asked.version, Asked.task, Decision)),
+    call_with_inference_limit(Goal, Limit, Outcome),
     (   Outcome == inference_limit_exceeded
     ->  throw(too_long(Limit))
     ;   true
@@ -113,6 +158,9 @@ facts(Asked, Facts) :-
 fact(_, Fact) :-
     primitive_values(ID, Position, Dimensions, Exponents, Shape),
     format(string(Fact), "~q", [primitive_values(ID, Position, Dimensions, Exponents, Shape)]).
+fact(_, Fact) :-
+    layout_fact(Known),
+    format(string(Fact), "~q", [Known]).
 fact(Asked, Fact) :-
     Asked.version == v2,
     with_knowledge_all(Asked.knowledge, triple(Asked.task, _, _), Triples),

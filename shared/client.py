@@ -11,6 +11,7 @@ It speaks the public contract only, so it works with any backend.
 from __future__ import annotations
 
 import contextlib
+import json
 from collections.abc import Callable, Iterator, Mapping
 from dataclasses import dataclass
 from typing import Any
@@ -22,7 +23,7 @@ from numpy.typing import ArrayLike, NDArray
 from shared.schemas.answer import GraspAnswer
 from shared.schemas.route import Request, Response, Route
 from shared.service.client import MAX_ANSWER_BYTES, check, compose, read, unavailable
-from shared.wire import NPZ
+from shared.wire import NPZ, Message
 from shared.wire.npz import read_npz, write_npz
 
 BACKEND = "backend"
@@ -74,7 +75,8 @@ class Sparge:
             A name from the backend's tasks.
         **parameters
             The others of POST /grasp: reasoning, input, viewpoint, target, gripper,
-            max_grasps, seed, explain, frame_id.
+            max_grasps, seed, method, recovery, explain, frame_id. `recovery` takes
+            `EmsParameters` (shared/schemas/primitive.py) or a mapping of their names.
 
         Raises
         ------
@@ -129,7 +131,7 @@ def connect(url: str, timeout_s: float = 120.0) -> Iterator[Sparge]:
 
 
 def _query(parameters: Mapping[str, Any]) -> dict[str, str]:
-    """Return parameters as texts: vectors and matrices as JSON lists."""
+    """Return parameters as texts: vectors, matrices, mappings and messages as JSON."""
     texts: dict[str, str] = {}
     for name, value in parameters.items():
         if value is None:
@@ -138,6 +140,10 @@ def _query(parameters: Mapping[str, Any]) -> dict[str, str]:
             texts[name] = str(value).lower()
         elif isinstance(value, str | int | float):
             texts[name] = str(value)
+        elif isinstance(value, Message):
+            texts[name] = value.model_dump_json()
+        elif isinstance(value, Mapping):
+            texts[name] = json.dumps(dict(value))
         else:
             texts[name] = str(np.asarray(value).tolist())
     return texts

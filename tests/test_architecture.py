@@ -29,7 +29,6 @@ MAY_USE_THE_WEB = (
     "shared.client",
     "services.wiring",
     "services.cli",
-    "experiments.latency",
 )
 
 
@@ -77,7 +76,8 @@ def _service(path: list[str]) -> str | None:
 
 def _speaks_http(path: list[str]) -> bool:
     """A service's `app`, and in the gateway what chains and documents the others."""
-    return path[-1] == "app" or path[1:] in (["gateway", "pipeline"], ["gateway", "openapi"])
+    beside_app = ("pipeline", "openapi", "knowledge")
+    return path[-1] == "app" or path[1:] in [["gateway", each] for each in beside_app]
 
 
 def _layer(path: list[str]) -> int:

@@ -7,18 +7,19 @@ from dataclasses import dataclass, field
 from pathlib import Path
 from typing import NamedTuple
 
-from experiments.camera import D435, StereoNoise, label_image, region_masks, render
+from experiments.camera import StereoNoise
 from experiments.catalogue import CatalogueObject
 from experiments.dataset.choice import chosen_objects
 from experiments.dataset.drop import Body, body_of
 from experiments.dataset.manifest import NAME, check_same, encode, manifest_of, read_manifest
 from experiments.dataset.options import DatasetOptions
 from experiments.dataset.output import CLEAN, NOISY, claimed, write_whole
+from experiments.dataset.photograph import photograph
 from experiments.dataset.processes import carry_out
 from experiments.dataset.randomness import generator
 from experiments.dataset.reader import read_view
-from experiments.dataset.scene import Scene, draw_scene
-from experiments.dataset.view import LabelledView, to_depth_units
+from experiments.dataset.scene import draw_scene
+from experiments.dataset.view import LabelledView
 from shared.errors import InvalidInput
 from shared.wire.npz import write_npz
 
@@ -141,7 +142,7 @@ def make_view(body: Body, number: int, seed: int) -> LabelledView:
     rng = generator(seed, f"scene of {body.thing.name}", number)
     best, most = None, -1
     for _ in range(MAX_SCENES):
-        view = _photograph(body.thing, number, draw_scene(body, number, rng))
+        view = photograph(body.thing, number, draw_scene(body, number, rng))
         seen = int(view.regions.sum(axis=(1, 2)).min(initial=MIN_SEEN_PX))
         if seen > most:
             best, most = view, seen
@@ -149,22 +150,6 @@ def make_view(body: Body, number: int, seed: int) -> LabelledView:
             break
     assert best is not None
     return best
-
-
-def _photograph(thing: CatalogueObject, number: int, scene: Scene) -> LabelledView:
-    ideal = render(thing, scene.world_from_object, scene.table, D435, scene.world_from_camera)
-    return LabelledView(
-        object_name=thing.name,
-        number=number,
-        depth=to_depth_units(ideal.depth),
-        label=label_image(thing, ideal),
-        intrinsics=D435.intrinsics,
-        tasks=thing.tasks,
-        regions=region_masks(thing, ideal),
-        camera_from_object=scene.camera_from_object,
-        camera_from_world=scene.camera_from_world,
-        table_height=scene.table.height,
-    )
 
 
 def _is_whole(path: Path) -> bool:

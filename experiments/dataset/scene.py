@@ -74,7 +74,7 @@ def draw_scene(
             world_from_object = moved @ upright
             hull = transform_points(world_from_object, body.hull)
             seen = in_image(transform_points(camera_from_world, hull), camera, IMAGE_MARGIN_PX)
-            if seen and _on_table(hull, table):
+            if seen and on_table(hull, table):
                 return Scene(table, world_from_object, world_from_camera)
     size = np.ptp(body.hull, axis=0)
     raise InvalidInput(
@@ -93,7 +93,8 @@ def in_image(points: Array, camera: PinholeCamera, margin_px: float = 0.0) -> bo
     return bool((pixels >= margin_px).all() and (pixels <= highest).all())
 
 
-def _on_table(points: Array, table: Table) -> bool:
+def on_table(points: Array, table: Table) -> bool:
+    """Return whether all points (N, 3) of the world's frame are over the table, off its borders."""
     low, high = (corner[:2] for corner in table.corners)
     inside = (points[:, :2] >= low + TABLE_MARGIN) & (points[:, :2] <= high - TABLE_MARGIN)
     return bool(inside.all())

@@ -9,21 +9,13 @@ from types import MappingProxyType
 import numpy as np
 from numpy.typing import NDArray
 
-from experiments.camera import (
-    D435,
-    HeadCamera,
-    StereoNoise,
-    Table,
-    label_image,
-    place_on,
-    region_masks,
-    render,
-)
+from experiments.camera import HeadCamera, StereoNoise, Table, place_on
 from experiments.catalogue import CatalogueObject, resting_pose
+from experiments.dataset.photograph import photograph
 from experiments.dataset.scene import HEAD_HEIGHT
-from experiments.dataset.view import LabelledView, to_depth_units
+from experiments.dataset.scene import Scene as Placed
 from experiments.framework import ShownView
-from shared.geometry.se3 import inverse, transform_points
+from shared.geometry.se3 import transform_points
 from shared.schemas.fields import Vector3
 
 Array = NDArray[np.float64]
@@ -97,28 +89,15 @@ def make_scene(thing: CatalogueObject, pose: str, number: int, views: int, seed:
     )
     looks_at = (TABLE.near + TABLE.depth / 2, 0.0, TABLE.height)
     world_from_camera = HeadCamera(HEAD_HEIGHT, looks_at).world_from_camera
-    camera_from_world = inverse(world_from_camera)
-    camera_from_object = camera_from_world @ world_from_object
-    ideal = render(thing, world_from_object, TABLE, D435, world_from_camera)
-    view = LabelledView(
-        object_name=thing.name,
-        number=number,
-        depth=to_depth_units(ideal.depth),
-        label=label_image(thing, ideal),
-        intrinsics=D435.intrinsics,
-        tasks=thing.tasks,
-        regions=region_masks(thing, ideal),
-        camera_from_object=camera_from_object,
-        camera_from_world=camera_from_world,
-        table_height=TABLE.height,
-    )
-    x, y, z = camera_from_world[:3, 2]
+    placed = Placed(TABLE, world_from_object, world_from_camera)
+    view = photograph(thing, number, placed)
+    x, y, z = view.camera_from_world[:3, 2]
     return Scene(
         thing=thing,
         pose=pose,
         number=number,
         yaw_deg=float(yaw % 360),
         shown=ShownView(view.with_noise(StereoNoise(), rng)),
-        vertices=transform_points(camera_from_object, thing.vertices),
+        vertices=transform_points(view.camera_from_object, thing.vertices),
         up=(float(x), float(y), float(z)),
     )

@@ -49,7 +49,11 @@ class Share:
         n, z2 = self.total, Z_95**2
         middle = (self.value + z2 / (2 * n)) / (1 + z2 / n)
         half = Z_95 / (1 + z2 / n) * math.sqrt(self.value * (1 - self.value) / n + z2 / (4 * n * n))
-        return max(0.0, middle - half), min(1.0, middle + half)
+        # Rounding must not push a bound past the share itself.
+        return (
+            max(0.0, min(middle - half, self.value)),
+            min(1.0, max(middle + half, self.value)),
+        )
 
     def brief(self) -> str:
         """Return `12/30`."""

@@ -8,10 +8,11 @@ from pathlib import Path
 from rich.console import Console
 
 from experiments.framework.asking import progress_bar
+from experiments.framework.catalogue_views import catalogue_sets
 from experiments.framework.experiment import Context, Experiment, Findings
 from experiments.framework.provenance import provenance
 from experiments.framework.report import save
-from experiments.framework.views import ViewSet, catalogue_set, scan_sets
+from experiments.framework.views import ViewSet, scan_sets
 from shared.client import Sparge
 
 VIEWS = "views"
@@ -74,14 +75,17 @@ def view_sets(
         return sets
     with progress_bar(console) as progress:
         bar = progress.add_task("rendering views")
-        made = catalogue_set(
+        views = limit or experiment.views_per_object
+        made = catalogue_sets(
             results / VIEWS,
-            limit or experiment.views_per_object,
+            views,
             seed,
+            noisy=min(experiment.noisy_views, views),
+            variants=experiment.variants,
             workers=workers,
             progress=lambda done, total: progress.update(bar, completed=done, total=total),
         )
-    return (made, *sets)
+    return (*made, *sets)
 
 
 def context_for(

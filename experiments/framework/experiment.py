@@ -124,6 +124,10 @@ class Experiment:
         Where the thesis has it.
     views_per_object : int or None
         How many views of each object of the catalogue it needs; None: no views.
+    noisy_views : int
+        So many of them also with the noise of a stereo camera.
+    variants : int
+        Random objects of every class that it needs views of as well.
     """
 
     name: str
@@ -132,6 +136,8 @@ class Experiment:
     run: Callable[[Context], Findings]
     thesis: str = ""
     views_per_object: int | None = 10
+    noisy_views: int = 0
+    variants: int = 0
 
 
 GLOSSARY: Mapping[str, str] = MappingProxyType(

@@ -94,23 +94,28 @@ def _draw(axes: Axes, asked: Asked, view: ShownView, result: GraspResult | None)
         predicted = result.point_region.reshape(shape)
     truth = view.view.region(asked.task)
     on_object = view.view.on_object
-    picture = _grey(view)
+    picture = grey(view)
     picture[on_object] = REST
     picture[on_object & truth] = MISSED
     picture[predicted] = WRONG
     picture[predicted & truth] = HIT
-    rows, columns = np.nonzero(on_object | predicted)
-    low = np.maximum([rows.min() - _MARGIN_PX, columns.min() - _MARGIN_PX], 0)
-    high = np.array([rows.max(), columns.max()]) + _MARGIN_PX
-    axes.imshow(picture[low[0] : high[0], low[1] : high[1]], interpolation="nearest")
+    axes.imshow(picture[window(on_object | predicted)], interpolation="nearest")
     score = f"IoU {asked.score.iou:.2f}" if asked.score else "nothing found"
     axes.set_title(f"{asked.thing} {asked.view}, {asked.task}\n{score}", fontsize=8)
 
 
-def _grey(view: ShownView) -> NDArray[np.float64]:
+def grey(view: ShownView) -> NDArray[np.float64]:
     """Return the depth image (H, W, 3) as light greys, near is lighter."""
     depth = view.view.depth.astype(np.float64)
     seen = depth > 0
     low, high = (depth[seen].min(), depth[seen].max()) if seen.any() else (0.0, 1.0)
     grey = np.where(seen, 0.97 - 0.25 * (depth - low) / max(high - low, 1.0), 1.0)
     return np.repeat(grey[..., None], 3, axis=2)
+
+
+def window(mask: NDArray[np.bool_]) -> tuple[slice, slice]:
+    """Return the rows and columns around the pixels of a mask (H, W), with a margin."""
+    rows, columns = np.nonzero(mask)
+    low = np.maximum([rows.min() - _MARGIN_PX, columns.min() - _MARGIN_PX], 0)
+    high = np.array([rows.max(), columns.max()]) + _MARGIN_PX
+    return slice(int(low[0]), int(high[0])), slice(int(low[1]), int(high[1]))

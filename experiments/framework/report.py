@@ -147,7 +147,17 @@ which size to expect, and are no race on equal terms.</p>
 """
 
 
-ORDER = ("regions", "grasps", "timing", "extension", "demo", "tuning", "shapes", "robustness")
+ORDER = (
+    "regions",
+    "grasps",
+    "timing",
+    "extension",
+    "demo",
+    "tuning",
+    "shapes",
+    "primitives",
+    "robustness",
+)
 """Of the experiments on the page: the thesis's, then its appendix, then ours."""
 
 

@@ -2,7 +2,6 @@
 
 from __future__ import annotations
 
-import hashlib
 from collections.abc import Callable, Mapping, Sequence
 from dataclasses import dataclass, field, replace
 from functools import cached_property
@@ -12,19 +11,15 @@ from types import MappingProxyType
 import numpy as np
 from numpy.typing import ArrayLike, NDArray
 
-from experiments.camera import StereoNoise
-from experiments.catalogue import CATALOGUE, build
+from experiments.catalogue import CatalogueObject
 from experiments.dataset import (
     DEPTH_SCALE,
-    DatasetOptions,
     LabelledView,
     ViewFile,
-    make_dataset,
     read_view,
     view_files,
 )
-from experiments.dataset.manifest import encode, manifest_of, read_manifest
-from experiments.dataset.output import CLEAN
+from experiments.dataset.manifest import read_manifest
 from shared.errors import InvalidInput
 from shared.geometry.points import points_from_depth
 
@@ -136,12 +131,15 @@ class ViewSet:
         What is known about the objects, by name.
     is_catalogue : bool
         Made by this project, as opposed to a folder of scans.
+    objects : mapping
+        The objects themselves, by name, where they are known.
     """
 
     name: str
     files: tuple[ViewFile, ...] = field(repr=False)
     things: Mapping[str, Thing] = field(default_factory=dict, repr=False)
     is_catalogue: bool = False
+    objects: Mapping[str, CatalogueObject] = field(default_factory=dict, repr=False)
 
     def thing(self, file: ViewFile) -> Thing:
         """Return what is known about the object of a view."""
@@ -150,6 +148,10 @@ class ViewSet:
     def only(self, wanted: Callable[[ViewFile], bool]) -> ViewSet:
         """Return it with the wanted views."""
         return replace(self, files=tuple(filter(wanted, self.files)))
+
+    def named(self, name: str) -> ViewSet:
+        """Return it under another name."""
+        return replace(self, name=name)
 
     def serving(self, task: str) -> ViewSet:
         """Return it with the views of objects that serve a task; opens one view of each."""
@@ -168,10 +170,6 @@ class ViewSet:
             if seen[each.object_name] <= per_object:
                 kept.append(each)
         return replace(self, files=tuple(kept))
-
-
-def _silent(_done: int, _total: int) -> None:
-    """Show no progress."""
 
 
 def load(file: ViewFile) -> ShownView:
@@ -208,36 +206,6 @@ def scan_sets(folders: Sequence[Path]) -> tuple[ViewSet, ...]:
         )
         for path in paths
     )
-
-
-def catalogue_set(
-    folder: Path,
-    views: int,
-    seed: int,
-    *,
-    workers: int = 1,
-    progress: Callable[[int, int], None] = _silent,
-) -> ViewSet:
-    """Return views of the catalogue's objects, rendered unless `folder` has them.
-
-    Parameters
-    ----------
-    folder : Path
-        Keeps them, apart for other options and other states of the catalogue.
-    views : int
-        Of each object.
-    seed : int
-    workers : int
-        Processes that render.
-    progress : callable
-        Called with how many views are done, and of how many.
-    """
-    options = DatasetOptions(views=views, seed=seed)
-    things = tuple(build(name) for name in CATALOGUE)
-    state = hashlib.sha256(encode(manifest_of(options, StereoNoise(), things))).hexdigest()
-    place = folder / state[:12]
-    make_dataset(place, options, workers=workers, progress=progress)
-    return ViewSet("catalogue", view_files(place / CLEAN), things_of(place), is_catalogue=True)
 
 
 def things_of(dataset: Path) -> dict[str, Thing]:

@@ -88,4 +88,5 @@ REGIONS = Experiment(
     "Asked for every view, every task of its object, and both versions of the reasoning.",
     run,
     thesis="experiment 2, Tables 6.3 and 6.4",
+    noisy_views=5,
 )

@@ -11,10 +11,9 @@ from numpy.typing import NDArray
 
 from experiments.camera import StereoNoise
 from experiments.framework import ShownView
+from experiments.robustness.sizes import of_other_size
 
 Mask = NDArray[np.bool_]
-SCALES = (0.85, 1.15)
-"""Range of a thing's size within its class, about its own."""
 OCCLUDED = (0.20, 0.35, 0.50)
 NOISE = (1, 2, 3, 4)
 _AROUND_PX = 20
@@ -51,16 +50,8 @@ def occluded(view: ShownView, share: float, rng: np.random.Generator) -> ShownVi
     return view.without(near & (np.cos(angle) * column + np.sin(angle) * row > edge))
 
 
-def rescaled(view: ShownView, rng: np.random.Generator) -> ShownView:
-    """Return the view of the same scene at another size.
-
-    Scaling every depth by s scales the whole scene about the camera: exactly
-    the view of an object s times as large, s times as far away.
-    """
-    return replace(view, depth_scale=view.depth_scale * rng.uniform(*SCALES))
-
-
-Change = Callable[[ShownView, np.random.Generator], ShownView]
+Change = Callable[[ShownView, np.random.Generator], ShownView | None]
+"""Returns None where a view cannot be disturbed in this way."""
 
 
 def _unchanged(view: ShownView, _: np.random.Generator) -> ShownView:
@@ -75,14 +66,14 @@ def _occlusion(share: float) -> Change:
     return lambda view, rng: occluded(view, share, rng)
 
 
-AS_IT_IS = "as it is"
+AS_IT_IS, OTHER_SIZE = "as it is", "other size"
 CONDITIONS: Mapping[str, Change] = MappingProxyType(
     {
         AS_IT_IS: _unchanged,
         **{f"noise x{factor}": _noise(factor) for factor in NOISE},
         "half the points": with_half_the_points,
         **{f"{100 * share:.0f} % occluded": _occlusion(share) for share in OCCLUDED},
-        "size 85-115 %": rescaled,
+        OTHER_SIZE: of_other_size,
     }
 )
 """What is done to a view, by name."""

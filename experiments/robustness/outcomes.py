@@ -11,7 +11,7 @@ from scipy.spatial.transform import Rotation
 from experiments.framework import Asked, Context, ShownView, ask
 from experiments.framework.asking import Source
 from experiments.framework.scoring import GOOD_IOU, overlap
-from experiments.robustness.disturbances import AS_IT_IS, CONDITIONS, Mask
+from experiments.robustness.disturbances import AS_IT_IS, CONDITIONS, OTHER_SIZE, Mask
 from shared.client import GraspResult
 from shared.schemas.task import Version
 
@@ -24,13 +24,14 @@ class Disturbed:
     ----------
     condition : str
     asked : Asked
-    same : bool
-        Both found nothing, or both regions overlap by `GOOD_IOU` or more.
+    same : bool or None
+        Both found nothing, or both regions overlap by `GOOD_IOU` or more; None where
+        their pixels are not of the same scene.
     """
 
     condition: str
     asked: Asked
-    same: bool
+    same: bool | None
 
 
 @dataclass(frozen=True)
@@ -62,7 +63,7 @@ def ask_disturbed(
     before: GraspResult | None = None
     for condition, change in CONDITIONS.items():
         other = change(view, _rng(context.seed, source, condition))
-        if not other.on_object.any() or not other.truth(task).any():
+        if other is None or not other.on_object.any() or not other.truth(task).any():
             continue  # nothing is left to hold
         asked, after = ask(
             context.sparge, source, other, task, version, max_grasps=0, explain=False
@@ -71,7 +72,12 @@ def ask_disturbed(
             return []
         if condition == AS_IT_IS:
             before = after
-        rows.append(Disturbed(condition, asked, _same(before, after, other.on_object)))
+        same = (
+            None
+            if condition == OTHER_SIZE  # other pixels: nothing to compare
+            else _same(before, after, other.on_object)
+        )
+        rows.append(Disturbed(condition, asked, same))
     return rows
 
 

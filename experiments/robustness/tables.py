@@ -20,7 +20,10 @@ def disturbances(outcomes: Sequence[Disturbed]) -> Table:
         for condition in CONDITIONS:
             for version in VERSIONS:
                 mine = select(outcomes, source, condition, version)
+                if not mine:
+                    continue
                 scores = [each.asked.score for each in mine if each.asked.score]
+                same = [each.same for each in mine if each.same is not None]
                 rows.append(
                     (
                         source,
@@ -29,7 +32,7 @@ def disturbances(outcomes: Sequence[Disturbed]) -> Table:
                         Share.of(each.asked.found for each in mine),
                         MeanStd.of(score.iou for score in scores),
                         Share.of(each.asked.good for each in mine),
-                        None if condition == AS_IT_IS else Share.of(each.same for each in mine),
+                        None if condition == AS_IT_IS or not same else Share.of(same),
                     )
                 )
     return Table(
@@ -40,8 +43,10 @@ def disturbances(outcomes: Sequence[Disturbed]) -> Table:
         "Noise x1 is the stereo model of the dataset (sigma 1.5 mm at 1 m, growing with the square "
         "of the depth, steps and edge drop-out stay as they are). Occluded: that share of the "
         "object's pixels is hidden beyond a straight edge; a view in which nothing of the right "
-        "part is left does not count. Size: the whole scene scaled at random. Same: the region "
-        f"overlaps that of the undisturbed view by {GOOD_IOU} or more, or both are empty.",
+        "part is left does not count. Other size: the object alone, made as large as a random "
+        "variant of its class, at the same place on the same table; only objects of the catalogue "
+        f"can be. Same: the region overlaps that of the undisturbed view by {GOOD_IOU} or more, or "
+        "both are empty.",
     )
 
 

@@ -166,9 +166,16 @@ def by_rules(train: Split, test: Split) -> Result:
 
 
 def searched(
-    method: Method, train: Split, test: Split, *, seed: int = 0, workers: int = 1, grid: bool = True
+    method: Method,
+    train: Split,
+    test: Split,
+    *,
+    seed: int = 0,
+    workers: int = 1,
+    grid: bool = True,
+    folds: int = FOLDS,
 ) -> Result:
-    """Return what a method comes to with the hyper-parameters that do best in 5 folds.
+    """Return what a method comes to with the hyper-parameters that do best over the folds.
 
     Parameters
     ----------
@@ -178,12 +185,14 @@ def searched(
     seed, workers : int
     grid : bool
         False: only what the thesis found, to be quick.
+    folds : int
+        Of the cross-validation.
     """
     grids = method.grids if grid else ({k: (v,) for k, v in method.thesis_best.items()},)
     search = GridSearchCV(
         _pipeline(method, seed),
         [{f"model__{name}": list(each) for name, each in one.items()} for one in grids],
-        cv=StratifiedKFold(FOLDS, shuffle=True, random_state=seed),
+        cv=StratifiedKFold(folds, shuffle=True, random_state=seed),
         n_jobs=workers if workers > 1 else None,
     )
     start = time.perf_counter()

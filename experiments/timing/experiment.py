@@ -3,6 +3,7 @@
 from __future__ import annotations
 
 from collections.abc import Sequence
+from itertools import chain
 from statistics import median
 
 import numpy as np
@@ -11,9 +12,12 @@ from experiments.framework import Context, Experiment, Findings
 from experiments.framework.asking import VERSIONS
 from experiments.framework.knowledge import AddedTasks, added_tasks, affordances, name_prefix
 from experiments.framework.thesis import FIGURE_6_6_TASKS
+from experiments.timing.breakdown import breakdown_table
+from experiments.timing.limits import limits_table
 from experiments.timing.measure import (
     Case,
     Timed,
+    all_cases,
     cases_of,
     counts_of,
     measure,
@@ -27,6 +31,8 @@ from shared.schemas.task import LIST_TASKS, TaskDefinition
 
 VIEWS_PER_PAIR = 20
 COUNTS = (*FIGURE_6_6_TASKS, 1_000, 10_000)
+VIEWS_PER_OBJECT = 2
+"""For the breakdown, with every task of the object."""
 VIEWS_PER_COUNT = 4
 """Of each pair; few, so that the machine's mood does not change between the counts."""
 
@@ -38,13 +44,27 @@ def run(context: Context, counts: Sequence[int] = COUNTS) -> Findings:
     shipped = len(context.sparge.call(LIST_TASKS, Nothing()).tasks)
     measure(context, few[:1], shipped, "warming up")
     stages = measure(context, cases, shipped, "timing stages")
+    every = {
+        each.name: measure(
+            context,
+            all_cases(each, VIEWS_PER_OBJECT),
+            shipped,
+            f"timing {each.name}",
+        )
+        for each in context.views()
+    }
     growth, listing = _with_more_tasks(context, few, shipped, counts)
     again = measure(context, few, shipped, "timing again with the shipped tasks")
     return Findings(
         meaning=_meaning(stages, growth),
-        tables=(stage_table(stages), growth_table(growth, again, listing)),
+        tables=(
+            stage_table(stages),
+            breakdown_table(every),
+            growth_table(growth, again, listing),
+            limits_table(np.random.default_rng(context.seed)),
+        ),
         plots=(stage_bars(stages), growth_lines(growth)),
-        records=[each.record() for each in (*stages, *growth, *again)],
+        records=[each.record() for each in (*stages, *chain(*every.values()), *growth, *again)],
     )
 
 

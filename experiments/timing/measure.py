@@ -19,8 +19,10 @@ PAIRS = (("handover", "spatula"), ("handover", "bottle"), ("hammering", "hammer"
 """What the thesis measures: task and class (6.5.1)."""
 COMPARABLE = ("primitive_recovery", "reasoning", "matching")
 """Our stages that do what the thesis's total covers: no perception, no grasp detection."""
+CHECKS = "checks"
 STAGES = (
     ("parsing", "parsing the body", ()),
+    (CHECKS, "checking the names, beside perception", ()),
     ("perception", "perception", ()),
     (
         "primitive_recovery",
@@ -59,6 +61,17 @@ class Timed:
     def total(self) -> float:
         """The whole request, as the backend measured it."""
         return self.stages["total"]
+
+    @property
+    def rest(self) -> float:
+        """What no stage accounts for: the chain itself. The checks run beside perception."""
+        spent = (self.stages.get(stage, 0.0) for stage, *_ in STAGES if stage != CHECKS)
+        return self.total - sum(spent)
+
+    @property
+    def way(self) -> float:
+        """What only the client sees: packing the view, HTTP, writing and unpacking the answer."""
+        return self.seen - self.total
 
     @property
     def reasoning_stage(self) -> float:
@@ -111,6 +124,16 @@ def cases_of(views: ViewSet, per_pair: int) -> list[Case]:
     if not cases:
         raise InvalidInput("there are no views to time requests with")
     return cases
+
+
+def all_cases(views: ViewSet, per_object: int) -> list[Case]:
+    """Return every task of some views of each object."""
+    return [
+        Case(view, task, views.thing(file).class_name)
+        for file in views.limited(per_object).files
+        for view in [load(file)]
+        for task in view.tasks
+    ]
 
 
 def of_class(views: ViewSet, class_name: str) -> ViewSet:

@@ -11,7 +11,7 @@ from experiments.framework import Plot
 from experiments.framework.asking import VERSION_NAMES, VERSIONS
 from experiments.framework.plots import COLOURS, THESIS, new_figure, tidy
 from experiments.framework.thesis import FIGURE_6_6_TASKS, TABLE_6_6
-from experiments.timing.measure import STAGES, Timed, counts_of, of_version
+from experiments.timing.measure import CHECKS, STAGES, Timed, counts_of, of_version
 
 
 def stage_bars(timed: Sequence[Timed]) -> Plot:
@@ -19,9 +19,10 @@ def stage_bars(timed: Sequence[Timed]) -> Plot:
     figure = new_figure(9.0, 2.6)
     axes = figure.subplots()
     colours = ("#BBBBBB", "#6BAED6", "#2F6DB5", "#D9792B", "#3A8F5C", "#8E6BB0")
+    in_turn = [each for each in STAGES if each[0] != CHECKS]
     for row, version in enumerate(VERSIONS):
         left = 0.0
-        for (stage, name, _), colour in zip(STAGES, colours, strict=True):
+        for (stage, name, _), colour in zip(in_turn, colours, strict=True):
             width = 1e3 * float(
                 np.mean([t.stages.get(stage, 0.0) for t in of_version(timed, version)])
             )

@@ -65,8 +65,8 @@ def stage_table(timed: Sequence[Timed]) -> Table:
         ),
         tuple(rows),
         f"{len(timed)} requests, one at a time: {', '.join(_pairs(timed))}. ms: mean ± standard "
-        "deviation. Stages are measured at the gateway, so they hold the way there and back, and "
-        "the check of the task's and the gripper's names, which runs beside perception. The "
+        "deviation. Stages are measured at the gateway, so they hold the way there and back. The "
+        "names of task and gripper are checked while perception works. The "
         "thesis's figures are for a Core i7-9750H and leave out perception and grasp detection; "
         "its superquadrics, overlap removal and shape classification (2.3 + 4.3 + 1.0 s) are our "
         "primitive recovery.",
@@ -111,8 +111,7 @@ def growth_table(
         "cannot be removed, so the first line stands for the thesis's 5. Tasks are added through "
         "POST /tasks as relations of Version 2, which is where a backend can grow at run time; "
         "Version 1 is asked with the same tasks present, its rules stay those that are shipped. "
-        "Reasoning holds the check of the task's name against the list of all tasks, the same as "
-        "GET /tasks. The last line is measured after all were removed. The thesis prints no "
+        "The last line is measured after all were removed. The thesis prints no "
         "figures for its curves, only that the total of 9.3 s (Version 1) and 9.4 s (Version 2) "
         "does not grow from 5 to 200 tasks.",
     )

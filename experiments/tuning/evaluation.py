@@ -144,10 +144,9 @@ class Evaluator:
         SpargeError
             The backend is down, failed or came to no end.
         """
-        recovery = parameters.model_dump_json()
-        return Evaluation(tuple(self._pool.map(lambda view: self._ask(view, recovery), views)))
+        return Evaluation(tuple(self._pool.map(lambda view: self._ask(view, parameters), views)))
 
-    def _ask(self, view: TuningView, recovery: str) -> ViewOutcome:
+    def _ask(self, view: TuningView, parameters: EmsParameters) -> ViewOutcome:
         try:
             result = self._sparge.grasp(
                 {"points": view.points},
@@ -156,7 +155,8 @@ class Evaluator:
                 max_grasps=0,
                 explain=False,
                 seed=self._seed,
-                recovery=recovery,
+                method="ems",
+                recovery=parameters,
             )
         except (EmptyCloud, DegenerateCloud):  # too little to see: no primitive
             return ViewOutcome(view, 0, ViewCost(), good=False)

@@ -7,7 +7,7 @@ from dataclasses import dataclass
 import numpy as np
 
 from experiments.catalogue import CatalogueObject
-from experiments.tuning.boxes import smallest_box
+from experiments.framework.boxes import smallest_box
 
 
 @dataclass(frozen=True)
@@ -47,7 +47,7 @@ def _around(thing: CatalogueObject, names: tuple[str, ...]) -> ExpectedPrimitive
     vertices = np.concatenate(
         [mesh.vertices for part in thing.parts if part.name in names for mesh in part.meshes]
     )
-    edges, centre = smallest_box(vertices)
-    a, b, c = edges.tolist()
-    x, y, z = centre.tolist()
+    box = smallest_box(vertices)
+    a, b, c = box.lengths.tolist()
+    x, y, z = box.centre.tolist()
     return ExpectedPrimitive(names, (a, b, c), (x, y, z))

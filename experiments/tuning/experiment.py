@@ -166,6 +166,3 @@ def tuning(trials: int = TRIALS) -> Experiment:
         partial(run, trials=trials),
         thesis="A.1.1, Table A.1 and Figure A.1",
     )
-
-
-TUNING = tuning()

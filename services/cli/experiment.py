@@ -23,7 +23,8 @@ def experiment(
     name: Annotated[
         str,
         typer.Argument(
-            help="regions, grasps, timing, extension, demo, tuning, shapes or robustness"
+            help="regions, grasps, timing, extension, demo, tuning, shapes, robustness "
+            "or primitives"
         ),
     ],
     url: Annotated[
@@ -44,6 +45,9 @@ def experiment(
     human_labels: Annotated[
         Path | None, typer.Option(help="shapes: also test on this file of shapes named by people")
     ] = None,
+    trials: Annotated[
+        int | None, typer.Option(min=1, help="tuning: go on until there are so many trials")
+    ] = None,
     workers: Annotated[
         int, typer.Option(min=1, help="Questions at a time, where time is not measured")
     ] = 2,
@@ -53,7 +57,7 @@ def experiment(
     from experiments.registry import experiment as find
 
     progress, output = Console(stderr=True), Console()
-    wanted = find(name, human_labels)
+    wanted = find(name, human_labels=human_labels, trials=trials)
     folders = scans or []
     if wanted.views_per_object is not None and not (catalogue or folders):
         raise InvalidInput("there is nothing to ask about: name --scans, or leave the catalogue")

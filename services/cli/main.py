@@ -13,6 +13,8 @@ from rich.console import Console
 
 from services.cli.dataset import dataset
 from services.cli.experiment import experiment
+from services.cli.rule import rule_commands
+from services.cli.task import task_commands
 from shared.errors import SpargeError
 
 app = typer.Typer(
@@ -24,6 +26,8 @@ app = typer.Typer(
 
 app.command()(dataset)
 app.command()(experiment)
+app.add_typer(task_commands, name="task")
+app.add_typer(rule_commands, name="rule")
 
 
 class Reasoning(StrEnum):

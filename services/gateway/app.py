@@ -16,15 +16,25 @@ from starlette.datastructures import UploadFile
 
 from services.gateway import answer
 from services.gateway import request as requests
-from services.gateway.openapi import describe_grasp
+from services.gateway.knowledge import DOCUMENTED as KNOWLEDGE_ROUTES
+from services.gateway.knowledge import serve_knowledge
+from services.gateway.openapi import describe_grasp, describe_knowledge
 from services.gateway.pipeline import Pipeline
 from services.gateway.settings import STAGES, GatewaySettings
 from shared.errors import InvalidInput, UnsupportedMediaType
 from shared.schemas.execution import EXECUTE
 from shared.schemas.grasp import LIST_GRIPPERS
+from shared.schemas.knowledge import ASK_QUESTION, LIST_QUESTIONS
 from shared.schemas.route import Request as In
 from shared.schemas.route import Response as Out
 from shared.schemas.route import Route
+from shared.schemas.rule import (
+    ADD_AFFORDANCE,
+    ADD_RULE,
+    DELETE_AFFORDANCE,
+    DELETE_RULE,
+    LIST_RULES,
+)
 from shared.schemas.task import ADD_TASK, DELETE_TASK, LIST_AFFORDANCES, LIST_TASKS
 from shared.service import StageClient
 from shared.service.app import Health, create_base
@@ -40,6 +50,13 @@ _PASSED_ON: tuple[Route[Any, Any], ...] = (
     ADD_TASK,
     DELETE_TASK,
     LIST_AFFORDANCES,
+    ADD_AFFORDANCE,
+    DELETE_AFFORDANCE,
+    LIST_RULES,
+    ADD_RULE,
+    DELETE_RULE,
+    LIST_QUESTIONS,
+    ASK_QUESTION,
     LIST_GRIPPERS,
     EXECUTE,
 )
@@ -120,7 +137,9 @@ def create_app(
 
     for route in _PASSED_ON:
         serve(app, route, _forward(stages[route.service], route, settings), settings)
-    describe(app, _PASSED_ON)
+    serve_knowledge(app, stages["reasoning"], settings)
+    describe(app, (*_PASSED_ON, *KNOWLEDGE_ROUTES))
+    describe_knowledge(app)
     describe_grasp(app)
     return app
 

@@ -34,6 +34,29 @@ def describe_grasp(app: FastAPI) -> None:
     app.openapi = openapi  # type: ignore[method-assign]  # FastAPI's documented extension point
 
 
+def describe_knowledge(app: FastAPI) -> None:
+    """Add what `/knowledge` and `/sparql` take and give beside JSON and npz."""
+    plain = app.openapi
+
+    def openapi() -> dict[str, Any]:
+        document = plain()
+        knowledge, sparql = document["paths"]["/knowledge"], document["paths"]["/sparql"]
+        text: dict[str, Any] = {"schema": {"type": "string"}}
+        knowledge["get"]["responses"]["200"]["content"]["text/turtle"] = text
+        knowledge["post"]["requestBody"]["content"]["text/turtle"] = text
+        sparql["post"]["requestBody"]["content"]["application/sparql-query"] = text
+        answer = sparql["post"]["responses"]["200"]["content"]
+        answer["application/sparql-results+json"] = answer[JSON]
+        sparql["get"].update(
+            summary=sparql["post"]["summary"],
+            parameters=[{"name": "query", "in": "query", "required": True, **text}],
+            responses=sparql["post"]["responses"],
+        )
+        return document
+
+    app.openapi = openapi  # type: ignore[method-assign]  # FastAPI's documented extension point
+
+
 def _operation() -> dict[str, Any]:
     parameters = GraspParameters.model_json_schema(ref_template=REFERENCE)["properties"]
     arrays = View.model_json_schema()["properties"]

@@ -33,6 +33,9 @@ from shared.schemas.scene import PERCEIVE, PerceiveRequest, PerceiveResponse
 from shared.schemas.task import DECIDE, DecideRequest, DecideResponse
 from shared.service import StageClient
 
+CHECKS = "checks"
+"""Whether the task and the gripper are known, among the timings; it runs beside perception."""
+
 
 @dataclass(frozen=True)
 class Outcome:
@@ -55,7 +58,10 @@ class _Run:
     deadline: float
     timings_ms: dict[str, float] = field(default_factory=dict)
 
-    async def call(self, route: Route[Request, Response], request: Request) -> Response:
+    async def call(
+        self, route: Route[Request, Response], request: Request, timed_as: str | None = None
+    ) -> Response:
+        name = timed_as or route.service
         started = time.perf_counter()
         left = self.deadline - started
         if left <= 0:
@@ -64,7 +70,7 @@ class _Run:
             )
         response = await self.stages[route.service].call(route, request, left)
         spent = 1e3 * (time.perf_counter() - started)
-        self.timings_ms[route.service] = self.timings_ms.get(route.service, 0.0) + spent
+        self.timings_ms[name] = self.timings_ms.get(name, 0.0) + spent
         return response
 
 
@@ -132,12 +138,14 @@ class Pipeline:
             DecideRequest(
                 task=question.task,
                 reasoning=question.reasoning,
-                rule_set=self._settings.rule_set,
+                rule_set=question.rule_set or self._settings.rule_set,
                 primitives=(),
                 explain=False,
             ),
+            CHECKS,
         )
-        grippers = sorted(g.name for g in (await run.call(LIST_GRIPPERS, Nothing())).grippers)
+        listed = await run.call(LIST_GRIPPERS, Nothing(), CHECKS)
+        grippers = sorted(gripper.name for gripper in listed.grippers)
         gripper = question.gripper
         if gripper not in grippers:
             raise UnknownGripper(
@@ -149,16 +157,18 @@ class Pipeline:
     async def _recover(
         self, run: _Run, request: GraspRequest, scene: PerceiveResponse
     ) -> RecoverResponse:
+        parameters = request.parameters
         return await run.call(
             RECOVER,
             RecoverRequest(
                 points=scene.object_points,
-                viewpoint=request.parameters.viewpoint,
+                viewpoint=parameters.viewpoint,
                 plane=scene.plane,
                 up=scene.up,
-                preset=self._settings.preset,
-                parameters=request.parameters.recovery,
-                seed=request.parameters.seed,
+                method=parameters.method,
+                preset=None if parameters.method == "parts" else self._settings.preset,
+                parameters=parameters.recovery,
+                seed=parameters.seed,
             ),
         )
 
@@ -174,7 +184,7 @@ class Pipeline:
             DecideRequest(
                 task=request.parameters.task,
                 reasoning=request.parameters.reasoning,
-                rule_set=self._settings.rule_set,
+                rule_set=request.parameters.rule_set or self._settings.rule_set,
                 primitives=recovered.primitives,
                 joints=recovered.joints,
                 plane=scene.plane,

@@ -3,16 +3,16 @@
 from __future__ import annotations
 
 from collections.abc import Mapping
-from typing import Annotated, Any
+from typing import Annotated, Any, Self
 
 import orjson
-from pydantic import Field
+from pydantic import Field, model_validator
 
 from shared.errors import MalformedRequest
 from shared.schemas.fields import TaskText, Vector3
-from shared.schemas.primitive import EmsParameters
+from shared.schemas.primitive import EmsParameters, Method
 from shared.schemas.scene import InputKind, View
-from shared.schemas.task import Version
+from shared.schemas.task import RuleSet, Version
 from shared.wire import Message
 from shared.wire.codec import read_json_object, validate
 from shared.wire.files import read_cloud_file
@@ -26,16 +26,27 @@ class GraspParameters(Message):
 
     task: TaskText
     reasoning: Version = "v2"
+    rule_set: RuleSet | None = None
+    """Which rules decide; without it, the backend's own."""
     input: InputKind = "scene"
     viewpoint: Vector3 = (0.0, 0.0, 0.0)
     target: Vector3 | None = None
     gripper: Annotated[str, Field(min_length=1, max_length=64)] = "panda"
     max_grasps: Annotated[int, Field(ge=0, le=100)] = 10
     seed: Annotated[int, Field(ge=0, lt=2**32)] = 0
+    method: Method | None = None
+    """How the object is cut into parts; without it, the backend's own method, or `ems`
+    where `recovery` is given."""
     recovery: EmsParameters | None = None
-    """Instead of the backend's own parameters of the superquadric recovery."""
+    """Parameters of the method `ems`, instead of the backend's own."""
     explain: bool = True
     frame_id: Annotated[str, Field(min_length=1, max_length=128)] = "camera"
+
+    @model_validator(mode="after")
+    def _parameters_of_the_method(self) -> Self:
+        if self.recovery is not None and self.method == "parts":
+            raise ValueError("recovery holds parameters of the method ems, but method is parts")
+        return self
 
 
 class GraspRequest(Message):

@@ -32,10 +32,12 @@ class GatewaySettings(ServiceSettings):
         The same for POST /execute.
     samples : int
         Points at which grasps are sought (thesis 6.4.1: 300).
-    preset : str
-        Parameters of primitive recovery (Table A.1).
+    preset : str or None
+        Recover primitives by the method `ems` with these parameters of Table A.1, where a
+        request does not ask for another method; None: the recovery's own settings decide.
     rule_set : str
-        Which rules decide.
+        Which rules decide where a request does not say: `default`, or `thesis` for
+        those that were published.
     approach_distance, retreat_distance : float
         Of the pregrasp and the retreat from the grasp, in metres.
     """
@@ -52,8 +54,8 @@ class GatewaySettings(ServiceSettings):
     deadline_s: float = Field(default=30.0, gt=0)
     execution_deadline_s: float = Field(default=60.0, gt=0)
     samples: int = Field(default=300, ge=1, le=5000)
-    preset: Preset = "simulation"
-    rule_set: RuleSet = "thesis"
+    preset: Preset | None = None
+    rule_set: RuleSet = "default"
     approach_distance: float = Field(default=0.10, gt=0)
     retreat_distance: float = Field(default=0.10, gt=0)
 

@@ -22,4 +22,5 @@ def create_app(settings: GraspProposalSettings | None = None) -> FastAPI:
             bind(LIST_GRIPPERS, proposer.list_grippers),
             bind(PROPOSE, proposer.propose),
         ],
+        warm_up=proposer.warm_up,
     )

@@ -8,30 +8,16 @@ from numpy.typing import NDArray
 from services.grasp_proposal.hand import Hand
 from services.grasp_proposal.placements import Placements
 from services.grasp_proposal.workspace import Workspace
+from shared.jit import kernel
 
 Array = NDArray[np.float64]
 Mask = NDArray[np.bool_]
 
 _MARGIN = 0.001
-_CHUNK = 400_000
 
 
-def local_coordinates(placed: Placements, points: Array) -> NDArray[np.float32]:
-    """Return points (N, 3) in the frame of each placement's origin: (G, 3, N)."""
-    rotation = placed.rotation.astype(np.float32)
-    shift = np.einsum("gij,gi->gj", placed.rotation, placed.origin).astype(np.float32)
-    turned = np.matmul(rotation.transpose(0, 2, 1), points.T.astype(np.float32)[None])
-    return np.asarray(turned - shift[:, :, None])
-
-
-def chunks(rows: int, columns: int) -> list[slice]:
-    """Return slices of rows that keep a (rows, columns) table small."""
-    size = max(1, _CHUNK // max(1, columns))
-    return [slice(start, start + size) for start in range(0, rows, size)]
-
-
-def finger_hits(placed: Placements, hand: Hand, opening: Array, local: NDArray[np.float32]) -> Mask:
-    """Say which hands (G,) touch a point with a finger on their way in.
+def finger_hits(placed: Placements, hand: Hand, opening: Array, points: Array) -> Mask:
+    """Say which hands (G,) touch a point (N, 3) with a finger on their way in.
 
     Parameters
     ----------
@@ -40,44 +26,78 @@ def finger_hits(placed: Placements, hand: Hand, opening: Array, local: NDArray[n
     hand : Hand
     opening : (G,) array
         Distance between the pads on the way.
-    local : (G, 3, N) array
-        The points, from `local_coordinates`.
+    points : (N, 3) array
     """
-    tip = placed.tip[:, None]
-    y = _from_centre(placed, local) - opening[:, None] / 2
-    hit = (np.abs(local[:, 0]) < hand.finger_width / 2 + _MARGIN) & (local[:, 2] < tip + _MARGIN)
-    hit &= local[:, 2] > tip - hand.finger_length - hand.pregrasp
-    return np.asarray((hit & (y > -_MARGIN) & (y < hand.finger_thickness + _MARGIN)).any(axis=1))
+    inner, tip = opening / 2 - _MARGIN, placed.tip
+    outer = inner + hand.finger_thickness + 2 * _MARGIN
+    back = tip - hand.finger_length - hand.pregrasp
+    return _boxes_hit(
+        placed, hand.finger_width / 2 + _MARGIN, inner, outer, back, tip + _MARGIN, points
+    )
 
 
-def palm_hits(placed: Placements, hand: Hand, local: NDArray[np.float32]) -> Mask:
-    """Say which hands (G,) touch a point (G, 3, N) with the palm on their way in."""
-    front = (placed.tip - hand.finger_length)[:, None]
-    hit = np.abs(local[:, 0]) < hand.palm_size[0] / 2 + _MARGIN
-    hit &= _from_centre(placed, local) < hand.palm_size[1] / 2 + _MARGIN
-    hit &= local[:, 2] < front + hand.palm_clearance
-    hit &= local[:, 2] > front - hand.pregrasp - hand.palm_size[2]
-    return np.asarray(hit.any(axis=1))
-
-
-def _from_centre(placed: Placements, local: NDArray[np.float32]) -> NDArray[np.float32]:
-    centre = ((placed.left + placed.right) / 2).astype(np.float32)
-    return np.asarray(np.abs(local[:, 1] - centre[:, None]))
+def palm_hits(placed: Placements, hand: Hand, points: Array) -> Mask:
+    """Say which hands (G,) touch a point (N, 3) with the palm on their way in."""
+    front = placed.tip - hand.finger_length
+    outer = np.full(len(placed), hand.palm_size[1] / 2 + _MARGIN)
+    back = front - hand.pregrasp - hand.palm_size[2]
+    half_width = hand.palm_size[0] / 2 + _MARGIN
+    return _boxes_hit(placed, half_width, -outer, outer, back, front + hand.palm_clearance, points)
 
 
 def touches_obstacle(placed: Placements, hand: Hand, opening: Array, obstacles: Array) -> Mask:
     """Say which hands (G,) meet an obstacle with a finger, the palm or between the pads."""
-    touched = np.zeros(len(placed), dtype=np.bool_)
-    for rows in chunks(len(placed), len(obstacles)):
-        part = placed.take(np.arange(len(placed))[rows])
-        local = local_coordinates(part, obstacles)
-        enclosed = np.abs(local[:, 0]) < hand.finger_width / 2
-        enclosed &= _from_centre(part, local) < opening[rows][:, None] / 2
-        enclosed &= local[:, 2] < part.tip[:, None]
-        enclosed &= local[:, 2] > (part.tip - hand.finger_length)[:, None]
-        touched[rows] = finger_hits(part, hand, opening[rows], local) | palm_hits(part, hand, local)
-        touched[rows] |= enclosed.any(axis=1)
-    return touched
+    outer, back = opening / 2, placed.tip - hand.finger_length
+    between = _boxes_hit(placed, hand.finger_width / 2, -outer, outer, back, placed.tip, obstacles)
+    hit = finger_hits(placed, hand, opening, obstacles) | palm_hits(placed, hand, obstacles)
+    return np.asarray(hit | between)
+
+
+def _boxes_hit(
+    placed: Placements,
+    half_width: float,
+    inner: Array,
+    outer: Array,
+    back: Array,
+    front: Array,
+    points: Array,
+) -> Mask:
+    """Say which hands (G,) have a point (N, 3) in a box on either side of their middle.
+
+    `half_width` of the box along x, from `inner` to `outer` along y from the middle of
+    the part, from `back` to `front` along z.
+    """
+    middle = (placed.left + placed.right) / 2
+    limits = np.column_stack([middle, inner, outer, back, front])
+    return any_inside(placed.origin, placed.rotation, half_width, limits, points)
+
+
+@kernel
+def any_inside(
+    origin: Array, rotation: Array, half_width: float, limits: Array, points: Array
+) -> Mask:
+    """Say which frames (G,) have one of the points (N, 3) in their box.
+
+    Inside is |x| < half_width, inner < |y - middle| < outer and back < z < front in the
+    frame of `origin` (G, 3) and `rotation` (G, 3, 3); `limits` (G, 5) in this order.
+    """
+    hit = np.zeros(len(origin), dtype=np.bool_)
+    for g in range(len(origin)):
+        r = rotation[g]
+        middle, inner, outer, back, front = limits[g]
+        for n in range(len(points)):
+            x = points[n, 0] - origin[g, 0]
+            y = points[n, 1] - origin[g, 1]
+            z = points[n, 2] - origin[g, 2]
+            aside = abs(r[0, 1] * x + r[1, 1] * y + r[2, 1] * z - middle)
+            if not inner < aside < outer:
+                continue
+            if abs(r[0, 0] * x + r[1, 0] * y + r[2, 0] * z) >= half_width:
+                continue
+            if back < r[0, 2] * x + r[1, 2] * y + r[2, 2] * z < front:
+                hit[g] = True
+                break
+    return hit
 
 
 def support_clearance(

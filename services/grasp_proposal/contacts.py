@@ -7,11 +7,11 @@ from dataclasses import dataclass, replace
 import numpy as np
 from numpy.typing import NDArray
 
-from services.grasp_proposal.boxes import chunks, finger_hits, local_coordinates, palm_hits
+from services.grasp_proposal.boxes import finger_hits, palm_hits
+from services.grasp_proposal.closer_look import look_closer
 from services.grasp_proposal.hand import Hand
 from services.grasp_proposal.placements import Placements
-from services.grasp_proposal.side import CONTINUES, touch_side
-from services.grasp_proposal.slab import cut_slab
+from services.grasp_proposal.side import touch_side
 from services.grasp_proposal.workspace import Workspace
 from shared.geometry.rotation import unit
 
@@ -68,34 +68,22 @@ class Contacts:
 
 def find_contacts(workspace: Workspace, hand: Hand, placed: Placements) -> Contacts:
     """Look at each placed hand with the whole cloud."""
-    parts = [
-        _contacts(workspace, hand, placed.take(np.arange(len(placed))[rows]))
-        for rows in chunks(len(placed), len(workspace.points))
-    ]
-    joined = {
-        name: np.concatenate([getattr(part, name) for part in parts])
-        for name in Contacts.__dataclass_fields__
-        if name != "placed"
-    }
-    edges = {
-        name: np.concatenate([getattr(part.placed, name) for part in parts])
-        for name in ("left", "right", "front")
-    }
-    return Contacts(placed=replace(placed, **edges), **joined)
-
-
-def _contacts(workspace: Workspace, hand: Hand, placed: Placements) -> Contacts:
-    slab = cut_slab(workspace, placed, hand.finger_width / 2 + CONTINUES, CONTINUES)
-    x, y, z = slab.local[:, 0], slab.local[:, 1], slab.local[:, 2]
-    held = (np.abs(x) < hand.finger_width / 2) & (z < placed.tip[:, None])
-    held &= (y > placed.left[:, None] - 0.001) & (y < placed.right[:, None] + 0.001)
-    count = held.sum(axis=1)
-    left, right = _span(y, held)
-    front, _ = _span(z, held)
-    left_side = touch_side(workspace, placed, hand, slab, held, -1, left)
-    right_side = touch_side(workspace, placed, hand, slab, held, +1, right)
-    left_hidden, right_hidden = _hidden_flanks(workspace, placed, right - left, hand)
-    exact = replace(placed, left=left - left_hidden, right=right + right_hidden, front=front)
+    seen = look_closer(
+        workspace.points,
+        workspace.normals,
+        workspace.in_focus,
+        placed.origin,
+        placed.rotation,
+        np.column_stack([placed.tip, placed.left, placed.right]),
+        hand.finger_width,
+    )
+    closing = placed.rotation[:, :, 1]
+    left_side = touch_side(workspace, closing, seen.left_pad, -1)
+    right_side = touch_side(workspace, closing, seen.right_pad, +1)
+    left_hidden, right_hidden = _hidden_flanks(workspace, placed, seen.right - seen.left, hand)
+    exact = replace(
+        placed, left=seen.left - left_hidden, right=seen.right + right_hidden, front=seen.front
+    )
     width = exact.right - exact.left
     opening = np.minimum(width + 2 * hand.clearance, hand.max_opening)
     return Contacts(
@@ -107,11 +95,11 @@ def _contacts(workspace: Workspace, hand: Hand, placed: Placements) -> Contacts:
         sloped=left_side.sloped | right_side.sloped,
         coverage=np.minimum(left_side.coverage, right_side.coverage),
         twist=np.abs(left_side.x - right_side.x),
-        engagement=placed.tip - front,
-        in_focus=(held & slab.in_focus).sum(axis=1) / np.maximum(count, 1),
-        finger_hit=finger_hits(exact, hand, opening, slab.local),
-        palm_hit=palm_hits(exact, hand, local_coordinates(exact, workspace.coarse)),
-        empty=count < _LEAST_POINTS,
+        engagement=placed.tip - seen.front,
+        in_focus=seen.in_focus / np.maximum(seen.number, 1),
+        finger_hit=finger_hits(exact, hand, opening, workspace.points),
+        palm_hit=palm_hits(exact, hand, workspace.points),
+        empty=seen.number < _LEAST_POINTS,
     )
 
 
@@ -134,10 +122,3 @@ def _hidden_flanks(
     spare = np.maximum(hand.max_width - width, 0.0)
     hidden = np.minimum(ratio * width, spare)
     return np.where(across < 0, hidden, 0.0), np.where(across > 0, hidden, 0.0)
-
-
-def _span(values: NDArray[np.float32], mask: Mask) -> tuple[Array, Array]:
-    """Return smallest and largest masked value (G,), zero in rows without one."""
-    low = np.where(mask, values, np.inf).min(axis=1)
-    high = np.where(mask, values, -np.inf).max(axis=1)
-    return np.where(np.isfinite(low), low, 0.0), np.where(np.isfinite(high), high, 0.0)

@@ -5,10 +5,12 @@ from __future__ import annotations
 import numpy as np
 from numpy.typing import NDArray
 
+from shared.jit import kernel
+
 Array = NDArray[np.float64]
 
 _NEAR = 0.010
-_ALIKE_COS = np.cos(np.radians(20.0))
+_ALIKE_COS = float(np.cos(np.radians(20.0)))
 
 
 def distinct(centres: Array, rotations: Array, limit: int) -> NDArray[np.intp]:
@@ -26,13 +28,32 @@ def distinct(centres: Array, rotations: Array, limit: int) -> NDArray[np.intp]:
     limit : int
         Return at most so many.
     """
-    kept: list[int] = []
+    return _distinct(
+        np.ascontiguousarray(centres),
+        np.ascontiguousarray(rotations[:, :, 2]),
+        np.ascontiguousarray(rotations[:, :, 1]),
+        limit,
+    )
+
+
+@kernel
+def _distinct(centres: Array, approach: Array, closing: Array, limit: int) -> NDArray[np.intp]:
+    kept = np.empty(len(centres), dtype=np.intp)
+    count = 0
     for index in range(len(centres)):
-        if len(kept) >= limit:
+        if count >= limit:
             break
-        near = np.linalg.norm(centres[kept] - centres[index], axis=1) < _NEAR
-        approach = rotations[kept][:, :, 2] @ rotations[index][:, 2] > _ALIKE_COS
-        closing = np.abs(rotations[kept][:, :, 1] @ rotations[index][:, 1]) > _ALIKE_COS
-        if not (near & approach & closing).any():
-            kept.append(index)
-    return np.array(kept, dtype=np.intp)
+        alike = False
+        for other in kept[:count]:
+            away = along = across = 0.0
+            for axis in range(3):
+                away += (centres[other, axis] - centres[index, axis]) ** 2
+                along += approach[other, axis] * approach[index, axis]
+                across += closing[other, axis] * closing[index, axis]
+            if away < _NEAR**2 and along > _ALIKE_COS and abs(across) > _ALIKE_COS:
+                alike = True
+                break
+        if not alike:
+            kept[count] = index
+            count += 1
+    return kept[:count]

@@ -49,13 +49,3 @@ class Placements:
 
     def __len__(self) -> int:
         return len(self.tip)
-
-
-def join(parts: list[Placements]) -> Placements:
-    """Return the rows of all parts, in order."""
-    return Placements(
-        *(
-            np.concatenate([getattr(part, name) for part in parts])
-            for name in ("rotation", "origin", "tip", "left", "right", "front")
-        )
-    )

@@ -24,6 +24,7 @@ from shared.geometry.rotation import quaternion_from_matrix
 from shared.geometry.se3 import transform_points
 from shared.schemas.grasp import GripperList, ProposeRequest, ProposeResponse
 from shared.schemas.route import Nothing
+from shared.schemas.scene import SupportPlane
 
 Array = NDArray[np.float64]
 
@@ -42,6 +43,23 @@ class GraspProposer:
     def list_grippers(self, _: Nothing) -> GripperList:
         """Return the known grippers, in alphabetical order."""
         return GripperList(grippers=tuple(self._grippers.values()))
+
+    def warm_up(self) -> None:
+        """Run everything once, on a small post beside an obstacle: compiles what is not cached."""
+        turn, height = (
+            a.ravel() for a in np.meshgrid(np.arange(0, 3, 0.1), np.arange(0, 0.1, 0.004))
+        )
+        post = np.column_stack([-0.02 * np.sin(turn), 0.02 * np.cos(turn), height])
+        plane = SupportPlane(normal=(0.0, 0.0, 1.0), offset=0.0, inliers=0, residual_mm=0.0)
+        self.propose(
+            ProposeRequest(
+                points=post,
+                obstacle_points=post + np.array([0.1, 0.3, 0.0]),
+                plane=plane,
+                viewpoint=(-0.5, 0.0, 0.5),
+                samples=20,
+            )
+        )
 
     def propose(self, request: ProposeRequest) -> ProposeResponse:
         """Return collision-free grasps, best first.
@@ -84,9 +102,12 @@ class GraspProposer:
             rejected[reason] += int((good & failed).sum())
             good &= ~failed
         if len(workspace.obstacles):
-            hit = touches_obstacle(contacts.placed, hand, contacts.opening, workspace.obstacles)
-            rejected["collision_obstacle"] += int((good & hit).sum())
-            good &= ~hit
+            rows = np.flatnonzero(good)
+            hit = touches_obstacle(
+                contacts.placed.take(rows), hand, contacts.opening[rows], workspace.obstacles
+            )
+            rejected["collision_obstacle"] += int(hit.sum())
+            good[rows[hit]] = False
         sight = None
         if workspace.viewpoint is not None:
             sight = SightMap.of(workspace.points, workspace.viewpoint)

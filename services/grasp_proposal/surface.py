@@ -8,6 +8,8 @@ import numpy as np
 from numpy.typing import NDArray
 from scipy.spatial import cKDTree
 
+from services.grasp_proposal.eigen import principal_frames
+from services.grasp_proposal.neighbourhood import scatter_of_groups, scatter_within
 from shared.geometry.rotation import unit
 
 Array = NDArray[np.float64]
@@ -16,7 +18,6 @@ _NORMAL_NEIGHBOURS = 16
 _CURVATURE_NEIGHBOURS = 24
 _CURVED = 0.02
 _PART_RADIUS = 0.035
-_PART_NEIGHBOURS = 256
 
 
 @dataclass(frozen=True)
@@ -46,8 +47,8 @@ def estimate_normals(points: Array, coarse: Array, viewpoint: Array | None) -> A
     They point to the viewpoint, or away from the centroid where there is none.
     """
     _, near = cKDTree(coarse).query(points, k=min(_NORMAL_NEIGHBOURS, len(coarse)))
-    _, vectors = np.linalg.eigh(_scatter(coarse[near]))
-    normals = vectors[:, :, 0]
+    scatters = scatter_of_groups(coarse, near.reshape(len(points), -1))
+    normals = principal_frames(scatters)[1][:, :, 0]
     outwards = points - points.mean(axis=0) if viewpoint is None else viewpoint - points
     flip = np.einsum("ij,ij->i", normals, outwards) < 0
     return np.where(flip[:, None], -normals, normals)
@@ -55,28 +56,15 @@ def estimate_normals(points: Array, coarse: Array, viewpoint: Array | None) -> A
 
 def local_frames(at: Array, normal: Array, coarse: Array, coarse_normals: Array) -> LocalFrames:
     """Return the frames at points (S, 3) with normals (S, 3) of the surface `coarse` (M, 3)."""
-    tree = cKDTree(coarse)
-    _, near = tree.query(at, k=min(_CURVATURE_NEIGHBOURS, len(coarse)))
+    _, near = cKDTree(coarse).query(at, k=min(_CURVATURE_NEIGHBOURS, len(coarse)))
     around = coarse_normals[near]
     varying = np.einsum("ski,skj->sij", around, around) / near.shape[1]
-    part = _part_axes(coarse, tree, at)
+    part = principal_frames(scatter_within(coarse, at, _PART_RADIUS))[1][:, :, 2]
     tangent = np.stack(_tangents(normal, part), axis=2)
     values, vectors = np.linalg.eigh(np.einsum("sia,sij,sjb->sab", tangent, varying, tangent))
     curvature = np.einsum("sia,sa->si", tangent, vectors[:, :, 0])
     flat = values[:, 1] - values[:, 0] < _CURVED
     return LocalFrames(at, normal, np.where(flat[:, None], tangent[:, :, 0], curvature), part)
-
-
-def _part_axes(points: Array, tree: cKDTree, at: Array) -> Array:
-    distance, near = tree.query(
-        at, k=min(_PART_NEIGHBOURS, len(points)), distance_upper_bound=_PART_RADIUS
-    )
-    weight = np.isfinite(distance).astype(np.float64)
-    around = points[np.minimum(near, len(points) - 1)]
-    mean = np.einsum("sk,ski->si", weight, around) / np.maximum(weight.sum(axis=1), 1)[:, None]
-    centred = (around - mean[:, None]) * weight[:, :, None]
-    _, vectors = np.linalg.eigh(np.einsum("ski,skj->sij", centred, centred))
-    return np.asarray(vectors[:, :, 2])
 
 
 def _tangents(normal: Array, hint: Array) -> tuple[Array, Array]:
@@ -87,8 +75,3 @@ def _tangents(normal: Array, hint: Array) -> tuple[Array, Array]:
     fallback = fallback - normal * np.einsum("si,si->s", fallback, normal)[:, None]
     first = unit(np.where(along_normal[:, None], fallback, first))
     return first, np.cross(normal, first)
-
-
-def _scatter(groups: Array) -> Array:
-    centred = groups - groups.mean(axis=1, keepdims=True)
-    return np.asarray(np.einsum("nki,nkj->nij", centred, centred))

@@ -23,6 +23,8 @@ _COARSE, _COARSE_COUNT = (0.003, 0.004, 0.005, 0.006), 1200
 _OBSTACLES = (0.004,)
 _HAND_REACH = 0.5
 _STEEP = 0.98
+_DIGITS = 9
+"""Nanometres: the same numbers, to the last bit, wherever the scene was moved to."""
 
 
 @dataclass(frozen=True)
@@ -92,17 +94,19 @@ def build_workspace(request: ProposeRequest) -> Workspace:
     work_from_outer = inverse(outer_from_work)
     if up is not None:
         if offset is not None:
-            offset += float(up @ outer_from_work[:3, 3])
-        up = work_from_outer[:3, :3] @ up
-    points = transform_points(work_from_outer, points)
-    order = np.lexsort((focus, *points.round(9).T))  # thinning and sampling move with the scene
+            offset = round(offset + float(up @ outer_from_work[:3, 3]), _DIGITS)
+        up = (work_from_outer[:3, :3] @ up).round(_DIGITS)
+    points = transform_points(work_from_outer, points).round(_DIGITS)
+    order = np.lexsort((focus, *points.T))
     points, focus = points[order], focus[order]
     fine = thin(points, _FINE, _FINE_COUNT)
     kept, kept_focus = points[fine], focus[fine]
     if not kept_focus.any():  # the focus is smaller than a voxel
         kept = np.vstack([kept, points[focus][:1]])
         kept_focus = np.append(kept_focus, True)
-    seen_from = None if viewpoint is None else transform_points(work_from_outer, viewpoint[None])[0]
+    seen_from = None
+    if viewpoint is not None:
+        seen_from = transform_points(work_from_outer, viewpoint[None])[0].round(_DIGITS)
     coarse = thin(kept, _COARSE, _COARSE_COUNT)
     normals = estimate_normals(kept, kept[coarse], seen_from)
     return Workspace(
@@ -123,10 +127,10 @@ def _near_obstacles(request: ProposeRequest, work_from_outer: Array, points: Arr
     """Return the obstacles (K, 3) that a hand at the object (N, 3) could meet."""
     if request.obstacle_points is None or not len(request.obstacle_points):
         return np.empty((0, 3))
-    obstacles = transform_points(work_from_outer, request.obstacle_points)
+    obstacles = transform_points(work_from_outer, request.obstacle_points).round(_DIGITS)
     low, high = points.min(axis=0) - _HAND_REACH, points.max(axis=0) + _HAND_REACH
     obstacles = obstacles[((obstacles >= low) & (obstacles <= high)).all(axis=1)]
-    obstacles = obstacles[np.lexsort(obstacles.round(9).T)]
+    obstacles = obstacles[np.lexsort(obstacles.T)]
     return np.asarray(obstacles[thin(obstacles, _OBSTACLES, MAX_POINTS)])
 
 

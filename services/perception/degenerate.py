@@ -17,7 +17,7 @@ _PLANE = 1e-5
 
 def require_area(points: Array) -> None:
     """Raise DegenerateCloud when points (N, 3) lie on a spot or a line."""
-    _require(points, _deviations(points[:: max(1, len(points) // 20_000)]))
+    _require(points, _deviations(points[:: max(1, len(points) // 5_000)]))
 
 
 def require_volume(points: Array) -> None:

@@ -7,6 +7,8 @@ from dataclasses import dataclass
 import numpy as np
 from numpy.typing import NDArray
 
+from services.perception.interpolation import interpolate
+
 Array = NDArray[np.float64]
 
 SIGMA_PER_MEDIAN = 1.4826
@@ -31,7 +33,7 @@ class NoiseProfile:
 
     def at(self, ranges: Array) -> Array:
         """Return the standard deviation at `ranges`, constant beyond the ends."""
-        return np.interp(ranges, self.ranges, self.sigmas)
+        return interpolate(np.ascontiguousarray(ranges), self.ranges, self.sigmas)
 
 
 def measure_noise(heights: Array, ranges: Array, bins: int = 8) -> NoiseProfile:
@@ -42,8 +44,9 @@ def measure_noise(heights: Array, ranges: Array, bins: int = 8) -> NoiseProfile:
     absolute height, which things on the surface hardly move, gives the deviation. It is
     taken about the plane, not about the class's own median, so that a warp counts too.
     """
-    order = np.argsort(ranges, kind="stable")
-    parts = np.array_split(order, min(bins, max(1, len(order) // 50)))
+    bins = min(bins, max(1, len(ranges) // 50))
+    borders = np.arange(1, bins) * len(ranges) // bins
+    parts = np.split(np.argpartition(ranges, borders), borders)
     sigmas = [SIGMA_PER_MEDIAN * np.median(np.abs(heights[part])) for part in parts]
     middles = [np.median(ranges[part]) for part in parts]
     return NoiseProfile(np.array(middles), np.maximum(np.array(sigmas), _FLOOR_M))

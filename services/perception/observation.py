@@ -7,10 +7,11 @@ from dataclasses import dataclass
 import numpy as np
 from numpy.typing import NDArray
 
+from services.perception.pixels import distances, points_of_depth, points_within
 from services.perception.units import require_metres
 from shared.errors import EmptyCloud, InvalidInput, PayloadTooLarge
-from shared.geometry.points import points_from_depth
 from shared.geometry.rotation import unit
+from shared.jit import read_only
 from shared.schemas.scene import InputKind, View
 
 Array = NDArray[np.float64]
@@ -84,42 +85,38 @@ def observe(view: View, kind: InputKind, min_points: int, max_points: int) -> Ob
             found=list(view.viewpoint),
             allowed=f"metres, up to {MAX_COORDINATE_M:g}",
         )
-    everything, viewpoint = _points_and_viewpoint(view)
-    require_metres(everything, kind, field)
-    rows = np.flatnonzero(_all_columns(np.abs(everything) < MAX_COORDINATE_M))
-    points = everything.take(rows, axis=0)
+    points, rows, viewpoint = _finite_points(view)
+    require_metres(points, kind, field)
+    if len(points) and max(-float(points.min()), float(points.max())) >= MAX_COORDINATE_M:
+        points, kept = points_within(read_only(points), MAX_COORDINATE_M)
+        rows = rows[kept]
     if len(rows) < min_points:
         raise EmptyCloud(
-            f"{len(rows)} valid points of {len(everything)}, at least {min_points} are needed; "
+            f"{len(rows)} valid points of {count}, at least {min_points} are needed; "
             "a point is invalid when a coordinate is not finite, a pixel when it has no return",
             field=field,
             found=len(rows),
             allowed=min_points,
-            input_points=len(everything),
+            input_points=count,
         )
-    rays = points - viewpoint if viewpoint.any() else points
-    ranges = np.sqrt(np.einsum("ij,ij->i", rays, rays))
+    ranges = distances(points, viewpoint)
     if view.depth is not None:
         gaze = _image_centre(view)
     else:
-        gaze = unit(np.einsum("i,ij->j", 1.0 / np.maximum(ranges, 1e-9), rays))
-    return Observation(points, rows, ranges, viewpoint, gaze, len(everything))
+        gaze = unit(np.einsum("i,ij->j", 1.0 / np.maximum(ranges, 1e-9), points - viewpoint))
+    return Observation(points, rows, ranges, viewpoint, gaze, count)
 
 
-def _all_columns(table: NDArray[np.bool_]) -> NDArray[np.bool_]:
-    """Return `table.all(axis=1)` of a (N, 3) table, ten times as fast."""
-    return np.asarray(table[:, 0] & table[:, 1] & table[:, 2])
-
-
-def _points_and_viewpoint(view: View) -> tuple[Array, Array]:
+def _finite_points(view: View) -> tuple[Array, Rows, Array]:
+    """Return the finite points (M, 3), their rows (M,) in the input, and the viewpoint (3,)."""
     if view.depth is None or view.intrinsics is None:
-        return np.asarray(view.points, dtype=np.float64), np.asarray(view.viewpoint)
-    depth = view.depth
-    if depth.dtype.kind == "u":
-        depth = np.where(depth == np.iinfo(depth.dtype).max, 0, depth)
-    scale = 1.0 if view.depth_scale is None else view.depth_scale
-    with np.errstate(over="ignore", invalid="ignore"):
-        return points_from_depth(depth, view.intrinsics, scale), np.zeros(3)
+        given = read_only(np.empty((0, 3)) if view.points is None else view.points)
+        return *points_within(given, np.inf), np.asarray(view.viewpoint, dtype=np.float64)
+    kind = view.depth.dtype
+    saturated = float(np.iinfo(kind).max) if kind.kind == "u" else np.nan
+    scale = 1.0 if view.depth_scale is None else float(view.depth_scale)
+    depth, intrinsics = read_only(view.depth), read_only(view.intrinsics)
+    return *points_of_depth(depth, intrinsics, scale, saturated), np.zeros(3)
 
 
 def _image_centre(view: View) -> Array:

@@ -14,6 +14,7 @@ from services.perception.tabletop import Tabletop
 from services.perception.things import Thing, most_appealing
 from services.perception.units import checked_target
 from services.perception.up import guess_up
+from shared.geometry.points import points_from_depth
 from shared.geometry.rotation import frame_from_z
 from shared.schemas.scene import PerceiveRequest, PerceiveResponse, SupportPlane
 
@@ -53,11 +54,12 @@ class Perception:
         return self._answer(view, top, most_appealing(top.objects, view, target))
 
     def warm_up(self) -> None:
-        """Load and run everything once, on a small table with a box on it."""
-        side = np.linspace(-0.2, 0.2, 81)
-        x, y = (axis.ravel() for axis in np.meshgrid(side, side))
-        z = np.where((abs(x) < 0.04) & (abs(y) < 0.04), 0.75, 0.8)
-        self.perceive(PerceiveRequest(points=np.column_stack([x, y, z])))
+        """Run everything once, on a small table with a box on it: compiles what is not cached."""
+        depth = np.full((81, 81), 0.8)
+        depth[32:49, 32:49] = 0.75
+        intrinsics = np.array([[160.0, 0, 40], [0, 160.0, 40], [0, 0, 1]])
+        self.perceive(PerceiveRequest(depth=depth, intrinsics=intrinsics))
+        self.perceive(PerceiveRequest(points=points_from_depth(depth, intrinsics, 1.0)))
 
     def _whole(self, view: Observation) -> PerceiveResponse:
         require_volume(view.points)

@@ -2,30 +2,41 @@
 
 from __future__ import annotations
 
+from collections.abc import Callable
 from dataclasses import dataclass
+from typing import Any
 
 import numpy as np
 from numpy.typing import NDArray
-from scipy import ndimage
 
 from services.perception.noise import SIGMA_PER_MEDIAN, NoiseProfile
-from services.perception.plane import Plane
+from services.perception.plane import SAMPLE, Plane
+from services.perception.relief_map import (
+    far_above,
+    gather_heights,
+    grow,
+    highest_around,
+    points_over,
+    window_means,
+)
 from services.perception.settings import PerceptionSettings
 
 Array = NDArray[np.float64]
 Mask = NDArray[np.bool_]
+Cells = NDArray[np.integer[Any]]
 
 _MARGIN_M = 0.05
 _MAX_CELLS = 1_000_000
-_EVERY = 5
-_EIGHT = np.ones((3, 3), dtype=bool)
 
 
 @dataclass(frozen=True)
 class _Grid:
-    """Square cells over the seen piece of a plane, row-major in u, v."""
+    """Square cells over the seen piece of a plane, row-major in u, v, with an empty rim.
 
-    low: Array
+    `origin` (2,) is where the first cell inside the rim begins.
+    """
+
+    origin: Array
     cell: float
     shape: tuple[int, int]
 
@@ -34,27 +45,15 @@ class _Grid:
         low = plane.box[0] - _MARGIN_M
         extent = plane.box[1] + _MARGIN_M - low
         cell = max(finest, spacing, float(np.sqrt(extent.prod() / _MAX_CELLS)))
-        rows, columns = np.ceil(extent / cell).astype(int)
+        rows, columns = np.ceil(extent / cell).astype(int) + 2
         return cls(low, cell, (int(rows), int(columns)))
 
-    def locate(self, points: Array, basis: Array) -> tuple[NDArray[np.int64], Mask]:
-        """Return the cell (N,) over which points (N, 3) stand, and whether it exists."""
-        cells = np.zeros(len(points), dtype=np.int64)
-        inside = np.ones(len(points), dtype=bool)
-        for axis in (0, 1):
-            place = points @ (basis[:, axis] / self.cell)
-            place -= self.low[axis] / self.cell
-            inside &= (place >= 0) & (place < self.shape[axis])
-            np.clip(place, 0, self.shape[axis], out=place)
-            cells *= self.shape[axis]
-            cells += place.astype(np.int64)
-        return cells, inside
-
-    def ranges(self, foot: Array, distance: float) -> Array:
-        """Return the range of each cell from a sensor `distance` above the point `foot`."""
-        u = self.low[0] + (np.arange(self.shape[0]) + 0.5) * self.cell - foot[0]
-        v = self.low[1] + (np.arange(self.shape[1]) + 0.5) * self.cell - foot[1]
-        return np.asarray(np.sqrt(u[:, None] ** 2 + v[None, :] ** 2 + distance**2))
+    def ranges(self, cells: Cells, foot: Array, distance: float) -> Array:
+        """Return the range of cells (K,) from a sensor `distance` above the point `foot`."""
+        rows, columns = np.divmod(cells, self.shape[1])
+        u = self.origin[0] + (rows - 0.5) * self.cell - foot[0]
+        v = self.origin[1] + (columns - 0.5) * self.cell - foot[1]
+        return np.asarray(np.sqrt(u**2 + v**2 + distance**2))
 
 
 def relief(
@@ -93,21 +92,22 @@ def relief(
     -------
     (N,) array of bool
     """
-    tall = np.maximum(4 * settings.seed_height_m, 8 * sigmas)
-    standing = heights > tall
+    tall = 4 * settings.seed_height_m
     spacing = float(np.sqrt(plane.area / max(1.0, plane.share * len(points))))
     grid = _Grid.over(plane, spacing, settings.cell_m)
-    cells, inside = grid.locate(points, plane.basis)
-    used = np.flatnonzero(inside & (heights > -3 * sigmas - settings.grow_height_m))
-    cells = cells[used]
-    capped = np.minimum(heights[used], tall[used])
-    mean, count = _window_means(cells, capped, grid.shape)
-    ranges = grid.ranges(viewpoint @ plane.basis, float(plane.heights(viewpoint)))
-    kept = _certain_patches(mean, count, noise.at(ranges), settings)
-    top = _gather(np.maximum, np.where(kept, mean, 0.0))
-    chosen = np.flatnonzero(kept.ravel()[cells])
-    rows, cells = used[chosen], cells[chosen]
-    least = _threshold(top.ravel()[cells], mean.ravel()[cells], sigmas[rows], settings)
+    doubt = settings.grow_height_m, tall
+    axes = np.ascontiguousarray(plane.basis.T) / grid.cell
+    origin = grid.origin / grid.cell
+    cells, sums = gather_heights(points, heights, sigmas, doubt, axes, origin, *grid.shape)
+    count, mean = window_means(sums)
+    sensor = viewpoint @ plane.basis, float(plane.heights(viewpoint))
+    kept = _certain_patches(mean, count, lambda of: noise.at(grid.ranges(of, *sensor)), settings)
+    rows = points_over(cells, kept)
+    cells = cells[rows]
+    least = _threshold(
+        highest_around(cells, mean, kept), mean.ravel()[cells], sigmas[rows], settings
+    )
+    standing = far_above(heights, sigmas, tall, 8.0)
     standing[rows[heights[rows] > least]] = True
     return standing
 
@@ -127,39 +127,28 @@ def _threshold(top: Array, mean: Array, sigma: Array, settings: PerceptionSettin
     return np.maximum(np.minimum(0.5 * top, enough) - prior, -sigma)
 
 
-def _window_means(
-    cells: NDArray[np.int64], heights: Array, shape: tuple[int, int]
-) -> tuple[Array, Array]:
-    """Return mean height and number of points of the 3x3 window around each cell."""
-    size = shape[0] * shape[1]
-    number = np.asarray(np.bincount(cells, minlength=size), dtype=np.float64)
-    total = np.asarray(np.bincount(cells, heights, size), dtype=np.float64)
-    counts = _gather(np.add, number.reshape(shape))
-    totals = _gather(np.add, total.reshape(shape))
-    return np.divide(totals, counts, out=np.zeros(shape), where=counts > 0), counts
+def _certain_patches(
+    mean: Array, count: Array, sigmas: Callable[[Cells], Array], settings: PerceptionSettings
+) -> Mask:
+    """Return the windows that surely stand out, with the weaker ones joined to them.
 
+    `sigmas` gives the deviation of a single height over each of some cells.
+    """
+    means, counts = mean.ravel(), count.ravel()
 
-def _gather(combine: np.ufunc, grid: Array) -> Array:
-    """Return each cell combined with its eight neighbours, by sum or maximum."""
-    for axis in (0, 1):
-        lines = np.moveaxis(grid.copy(), axis, 0)
-        source = np.moveaxis(grid, axis, 0)
-        combine(lines[1:], source[:-1], out=lines[1:])
-        combine(lines[:-1], source[1:], out=lines[:-1])
-        grid = np.moveaxis(lines, 0, axis)
-    return grid
+    def significance(cells: Cells) -> Array:
+        return np.asarray(means[cells] * np.sqrt(counts[cells]) / sigmas(cells))
 
-
-def _certain_patches(mean: Array, count: Array, sigma: Array, settings: PerceptionSettings) -> Mask:
-    """Return the windows that surely stand out, with the weaker ones joined to them."""
-    significance = mean * np.sqrt(count) / sigma
-    seen = np.abs(significance[count > 0][::_EVERY])
+    seen = np.arange(0, len(counts), 1 + len(counts) // SAMPLE)
+    seen = seen[counts[seen] > 0]
+    scatter = 1.0
     if len(seen):
-        significance /= max(1.0, SIGMA_PER_MEDIAN * float(np.median(seen)))
-    weak = (mean > settings.grow_height_m) & (significance > settings.grow_sigmas)
-    sure = weak & (mean > settings.seed_height_m) & (significance > settings.seed_sigmas)
-    sure &= count > 1
-    patches, highest = ndimage.label(weak, _EIGHT)
-    certain = np.zeros(highest + 1, dtype=bool)
-    certain[patches[sure]] = True
-    return np.asarray(certain[patches])
+        scatter = max(1.0, SIGMA_PER_MEDIAN * float(np.median(np.abs(significance(seen)))))
+    high = np.flatnonzero(means > settings.grow_height_m)
+    clear = significance(high) / scatter
+    certain = (means[high] > settings.seed_height_m) & (clear > settings.seed_sigmas)
+    certain &= counts[high] > 1
+    weak, sure = np.zeros((2, *mean.shape), dtype=np.bool_)
+    weak.ravel()[high] = clear > settings.grow_sigmas
+    sure.ravel()[high] = certain & (clear > settings.grow_sigmas)
+    return grow(sure, weak)

@@ -12,8 +12,10 @@ from services.perception.cloud import cluster
 from services.perception.noise import SIGMA_PER_MEDIAN, measure_noise
 from services.perception.observation import Observation
 from services.perception.occlusion import join_hidden
+from services.perception.pixels import heights_above
 from services.perception.plane import SAMPLE, Plane, refine
 from services.perception.relief import relief
+from services.perception.relief_map import close_to
 from services.perception.settings import PerceptionSettings
 from services.perception.things import Thing, things_of
 
@@ -59,13 +61,14 @@ def lay_out(
     """Return the view divided by `plane`, refined, given the `others` that were found."""
     points = view.points
     plane = refine(plane, points, settings)
-    heights = plane.heights(points)
-    near = np.flatnonzero(np.abs(heights) < 2 * settings.plane_tolerance_m)
-    near = near[:: max(1, len(near) // SAMPLE)]
+    heights = heights_above(points, np.ascontiguousarray(plane.normal), plane.offset)
+    near = np.arange(0, len(points), max(1, len(points) // SAMPLE))
+    near = near[np.abs(heights[near]) < 2 * settings.plane_tolerance_m]
     noise = measure_noise(heights[near], view.ranges[near])
     sigmas = noise.at(view.ranges)
     standing = relief(plane, points, heights, view.viewpoint, noise, sigmas, settings)
-    on_plane = ~standing & (np.abs(heights) < np.maximum(settings.plane_tolerance_m, 4 * sigmas))
+    on_plane = close_to(heights, sigmas, settings.plane_tolerance_m, 4.0)
+    on_plane &= ~standing
     furniture = _furniture(plane, others, points, standing, settings)
     members = np.flatnonzero(standing & ~furniture)
     spacing = float(np.sqrt(plane.area / max(1.0, plane.share * len(points))))

@@ -5,6 +5,7 @@ from __future__ import annotations
 import numpy as np
 from numpy.typing import NDArray
 
+from services.perception.voxels import bounds
 from shared.errors import WrongUnits
 from shared.schemas.scene import InputKind
 
@@ -15,15 +16,15 @@ MAX_EXTENT_M = {"scene": 50.0, "object": 5.0}
 _SAMPLE = 5000
 
 
-def require_metres(everything: Array, kind: InputKind, field: str) -> None:
-    """Raise WrongUnits when points (N, 3), finite or not, span too much.
+def require_metres(points: Array, kind: InputKind, field: str) -> None:
+    """Raise WrongUnits when points (N, 3) span too much.
 
     Only the extent is asked, so that a frame far away does no harm, and the outermost
     twentieths on each side are left out.
     """
-    sample = _finite_sample(everything)
-    if len(sample) == 0:
+    if len(points) == 0:
         return
+    sample = points[:: max(1, len(points) // _SAMPLE)]
     with np.errstate(over="ignore"):
         low, high = np.percentile(sample, [5, 95], axis=0)
         extent = float((high - low).max())
@@ -49,7 +50,7 @@ def checked_target(target: tuple[float, float, float], points: Array) -> Array:
     WrongUnits
         It is so far from all points that it must be in millimetres.
     """
-    low, high = points.min(axis=0), points.max(axis=0)
+    low, high = bounds(points)
     point = np.array(target)
     away = float(np.maximum(low - point, point - high).max())
     if away > MAX_EXTENT_M["scene"]:
@@ -61,13 +62,3 @@ def checked_target(target: tuple[float, float, float], points: Array) -> Array:
             allowed="metres, near the points",
         )
     return point
-
-
-def _finite_sample(everything: Array) -> Array:
-    """Return some finite points of all, or all of them where they are rare."""
-    for step in (max(1, len(everything) // _SAMPLE), 1):
-        sample = everything[::step]
-        sample = sample[np.isfinite(sample).all(axis=1)]
-        if len(sample) > 100:
-            break
-    return sample

@@ -2,15 +2,21 @@
 
 from __future__ import annotations
 
+from typing import get_args
+
 import numpy as np
+from numpy.typing import NDArray
 
 from services.primitive_recovery.classify import ShapeClassifier
 from services.primitive_recovery.ems.hierarchy import Part, decompose
 from services.primitive_recovery.ems.overlap import kept_after_overlap
+from services.primitive_recovery.parts.recovery import recover_parts
+from services.primitive_recovery.parts.segment import Cutter
 from services.primitive_recovery.settings import PrimitiveRecoverySettings
 from services.primitive_recovery.validation import checked_cloud
 from shared.schemas.primitive import (
     PRESETS,
+    Method,
     Primitive,
     RecoverRequest,
     RecoverResponse,
@@ -20,8 +26,10 @@ from shared.superquadric import Superquadric
 
 
 class PrimitiveRecovery:
-    """Decompose, remove overlap, classify (thesis 3.2, 4.1, 4.2).
+    """Decompose and classify, by either of two methods.
 
+    `parts` cuts the cloud where the object's parts meet and fits each of them;
+    `ems` decomposes by hierarchical EMS and removes overlap (thesis 3.2, 4.1, 4.2).
     Safe to call from several threads at once.
 
     Parameters
@@ -32,6 +40,7 @@ class PrimitiveRecovery:
     def __init__(self, settings: PrimitiveRecoverySettings) -> None:
         self._settings = settings
         self._classifier = ShapeClassifier()
+        self._cutter = Cutter.load()
 
     def recover(self, request: RecoverRequest) -> RecoverResponse:
         """Return the primitives of an object's points, largest support first.
@@ -42,11 +51,22 @@ class PrimitiveRecovery:
             See `checked_cloud`.
         """
         points = checked_cloud(request.points, self._settings.max_points)
+        if self._method_of(request) == "parts":
+            return recover_parts(request, points, self._cutter, self._classifier)
+        return self._by_ems(request, points)
+
+    def _method_of(self, request: RecoverRequest) -> Method:
+        if request.method is not None:
+            return request.method
+        asks_for_ems = request.preset is not None or request.parameters is not None
+        return "ems" if asks_for_ems else self._settings.method
+
+    def _by_ems(self, request: RecoverRequest, points: NDArray[np.float64]) -> RecoverResponse:
         parameters = request.parameters or PRESETS[request.preset or self._settings.preset]
         rng = np.random.default_rng(request.seed)
         viewpoint = np.array(request.viewpoint)
         parts = decompose(points, parameters, viewpoint, self._settings.fit_points, rng)
-        kept = kept_after_overlap([part.superquadric for part in parts], rng)
+        kept = kept_after_overlap([part.superquadric for part in parts])
         remaining = [parts[index] for index in kept]
         shapes = self._classifier.classify([part.superquadric for part in remaining])
         return RecoverResponse(
@@ -66,7 +86,9 @@ class PrimitiveRecovery:
         directions = rng.normal(size=(600, 3))
         ball = 0.03 * directions / np.linalg.norm(directions, axis=1, keepdims=True)
         rod = rng.uniform(-1.0, 1.0, (600, 3)) * np.array([0.005, 0.005, 0.1])
-        self.recover(RecoverRequest(points=np.vstack([ball, rod + np.array([0.0, 0.0, 0.13])])))
+        cloud = np.vstack([ball, rod + np.array([0.0, 0.0, 0.13])])
+        for method in get_args(Method):
+            self.recover(RecoverRequest(points=cloud, method=method, viewpoint=(1.0, 0.0, 0.0)))
 
 
 def _primitive(index: int, part: Part, shape: ShapeClass, probability: float) -> Primitive:

@@ -4,7 +4,7 @@ from __future__ import annotations
 
 from pydantic import Field
 
-from shared.schemas.primitive import Preset
+from shared.schemas.primitive import Method, Preset
 from shared.settings import ServiceSettings, environment
 
 
@@ -13,6 +13,8 @@ class PrimitiveRecoverySettings(ServiceSettings):
 
     Attributes
     ----------
+    method : {"parts", "ems"}
+        For requests that ask for neither a method nor parameters of one.
     preset : {"simulation", "real_world"}
         Parameters of Table A.1 for requests that name none.
     fit_points : int
@@ -24,6 +26,7 @@ class PrimitiveRecoverySettings(ServiceSettings):
 
     model_config = environment("primitive_recovery")
 
+    method: Method = "parts"
     preset: Preset = "simulation"
     fit_points: int = Field(default=2000, ge=100)
     max_points: int = Field(default=1_000_000, ge=100)

@@ -13,6 +13,10 @@ from shared.schemas.primitive import Primitive
 
 Parts = Mapping[int, Primitive]
 
+_SCALED = ("min_dimension", "max_dimension", "min_ratio", "max_ratio", "at_least", "at_most")
+_OBVIOUS = 0.99
+"""A quantity that meets its bound with this support is not spelt out in the paragraph."""
+
 
 def explain_found(task: str, decision: JsonObject, parts: Parts) -> str:
     """Say which part to hold, by which rules, and which condition was closest to failing."""
@@ -63,14 +67,27 @@ def _why(trace: JsonObject, parts: Parts) -> str:
     if rule.startswith("relations:"):
         return _relations(trace["conditions"])
     grouped: dict[int | None, list[str]] = {}
-    for condition in trace["conditions"]:
+    spelt_out = _worth_telling(trace["conditions"])
+    for condition in spelt_out:
         grouped.setdefault(condition["part"], []).append(holding_clause(condition))
     told = [
         f"{_named(part, parts)} {joined([clause for clause in clauses if clause])}"
         for part, clauses in grouped.items()
         if part is not None and any(clauses)
     ]
+    clear = len(trace["conditions"]) - len(spelt_out)
+    if clear:
+        told.append(f"further conditions that are clearly met: {clear}")
     return f"The rule {rule} holds: {'; '.join(told)}."
+
+
+def _worth_telling(conditions: Sequence[JsonObject]) -> list[JsonObject]:
+    """Return the conditions without the clearly met ones, of which two are told if all are."""
+    measured = [each for each in conditions if each["kind"] in ("at_least", "at_most")]
+    clear = [each for each in measured if each["support"] >= _OBVIOUS]
+    if len(clear) == len(measured):
+        clear = sorted(clear, key=lambda each: float(each["support"]))[2:]
+    return [each for each in conditions if not any(each is one for one in clear)]
 
 
 def _relations(conditions: Sequence[JsonObject]) -> str:
@@ -84,6 +101,12 @@ def _relations(conditions: Sequence[JsonObject]) -> str:
         labels = joined(sorted({each["measured"] for each in freed}))
         listed = "; ".join(_not_avoided(each) for each in freed)
         told.append(f"The task leaves parts that count as {labels} free: {listed}.")
+    alone = [each["required"][0] for each in conditions if each["kind"] == "alone"]
+    if alone:
+        told.append(
+            f"The task would leave parts that count as {joined(alone)} free, "
+            "but the object offers nothing else."
+        )
     return " ".join(told)
 
 
@@ -105,7 +128,7 @@ def _closest_call(traces: Sequence[JsonObject]) -> str:
         condition
         for trace in traces
         for condition in trace["conditions"]
-        if condition["kind"] in ("min_dimension", "max_dimension", "min_ratio", "max_ratio")
+        if condition["kind"] in _SCALED
         and condition["support"] is not None
         and condition["support"] < 0.95
     ]

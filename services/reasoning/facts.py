@@ -6,8 +6,10 @@ import math
 from collections import Counter
 from collections.abc import Sequence
 
+from services.reasoning.layout import layout_of
 from shared.errors import InvalidInput, JsonObject
-from shared.schemas.primitive import Primitive
+from shared.schemas.primitive import Joint, Primitive
+from shared.schemas.scene import SupportPlane
 
 _SMALLEST_M, _LARGEST_M = 1e-6, 1e3
 _SMALLEST_EXPONENT, _LARGEST_EXPONENT = 0.01, 2.0
@@ -40,6 +42,41 @@ def facts_of(primitives: Sequence[Primitive], max_primitives: int) -> list[JsonO
             found=twice,
         )
     return [_fact(index, primitive) for index, primitive in enumerate(primitives)]
+
+
+def layout_facts(
+    primitives: Sequence[Primitive], joints: Sequence[Joint], plane: SupportPlane | None
+) -> JsonObject | None:
+    """Return the arguments of the facts of rules/quantities.pl; None without primitives."""
+    if not primitives:
+        return None
+    layout = layout_of(primitives, joints, plane)
+    ids = [primitive.id for primitive in primitives]
+    reaches, offsets = layout.reaches.tolist(), layout.offsets.tolist()
+    seen = max(1, sum(primitive.support for primitive in primitives))
+    return {
+        "length": float(layout.intervals.max()),
+        "parts": [
+            {
+                "id": primitive.id,
+                "extents": layout.extents[row].tolist(),
+                "interval": layout.intervals[row].tolist(),
+                "slant": float(layout.slants[row]),
+                "holes": primitive.holes,
+                "seen": primitive.support / seen,
+                "residual": primitive.residual_mm / 1e3,
+                "heights": None if layout.heights is None else layout.heights[row].tolist(),
+            }
+            for row, primitive in enumerate(primitives)
+        ],
+        "pairs": [
+            [one, other, reaches[i][j], offsets[i][j]]
+            for i, one in enumerate(ids)
+            for j, other in enumerate(ids)
+            if i != j
+        ],
+        "meeting": [[ids[one], ids[other]] for one, other in layout.meeting],
+    }
 
 
 def _fact(index: int, primitive: Primitive) -> JsonObject:

@@ -1,81 +1,87 @@
-"""What is known about tasks: the shipped ontology and the tasks added to it."""
+"""What is known about tasks and affordances: shipped, and learned while running."""
 
 from __future__ import annotations
 
-import itertools
-import threading
-from collections.abc import Mapping
+import contextlib
+from collections.abc import Iterator
 
-from services.reasoning.definition import checked, listed
-from services.reasoning.ontology import affordances_in, load_ontology, tasks_in, triples_of
-from services.reasoning.prolog import Prolog
-from services.reasoning.settings import ReasoningSettings
-from services.reasoning.task_store import TaskStore
-from shared.errors import Conflict, InternalError, InvalidInput, NotFound, UnknownTask
+from rdflib import Graph
+
+from services.reasoning.change import Change, Learned
+from services.reasoning.definition import listed
+from services.reasoning.exchange import graph_of, read_document
+from services.reasoning.memory import Memory
+from services.reasoning.shipped import Shipped
+from shared.errors import Conflict, NotFound, UnknownTask
+from shared.schemas.knowledge import KnowledgeDocument, KnowledgeImport, KnowledgeImported
+from shared.schemas.rule import AffordanceDefinition, Rule, RuleDefinition, RuleList, Word
 from shared.schemas.task import Affordance, RuleSet, Task, TaskDefinition, Version
-
-_numbers = itertools.count()
 
 
 class Knowledge:
-    """Tasks and affordances, in Python for listing and in Prolog for proving.
-
-    Prolog is told of a change when it happens, not with every request, and only
-    of what changed.
+    """What can be asked for and what can be added, over HTTP or otherwise.
 
     Parameters
     ----------
-    settings : ReasoningSettings
-        Where the ontology and the added tasks lie.
-    prolog : Prolog
-    rules : mapping
-        For each rule set, what Prolog has rules for: the tasks of Version 1
-        (`tasks`) and the affordances of Version 2 (`affordances`).
-
-    Raises
-    ------
-    InternalError
-        The ontology or an added task is not usable, or an affordance has no rule.
+    memory : Memory
+        What was learned.
+    shipped : Shipped
+    words : tuple of Word
+        The vocabulary of rules.
     """
 
-    def __init__(
-        self,
-        settings: ReasoningSettings,
-        prolog: Prolog,
-        rules: Mapping[RuleSet, Mapping[str, list[str]]],
-    ) -> None:
-        self.name = f"knowledge_{next(_numbers)}"
-        self._prolog = prolog
-        self._rules = rules
-        self._lock = threading.Lock()
-        self._store = TaskStore(settings.knowledge_dir)
-        graph = load_ontology(settings.ontology_file)
-        self._affordances = affordances_in(graph)
-        self._shipped = tasks_in(graph)
-        self._added = self._store.read()
-        self._check()
-        everything = {**self._shipped, **self._added}
-        prolog.ask("learn", knowledge=self.name, triples=triples_of(everything.values()))
+    def __init__(self, memory: Memory, shipped: Shipped, words: tuple[Word, ...]) -> None:
+        self._memory = memory
+        self._shipped = shipped
+        self._words = words
+        self._affordance_words = frozenset(
+            word.name for word in words if word.takes == "affordance"
+        )
+
+    @property
+    def name(self) -> str:
+        """Of the knowledge base in Prolog."""
+        return self._memory.name
 
     def close(self) -> None:
         """Let Prolog forget it."""
-        self._prolog.ask("forget_all", knowledge=self.name)
+        self._memory.close()
+
+    def refresh(self) -> None:
+        """Take over what other processes changed; costs one `stat` when there is nothing.
+
+        Raises
+        ------
+        InternalError
+            The stored knowledge is damaged.
+        """
+        self._memory.refresh()
 
     def tasks(self) -> tuple[Task, ...]:
         """Return every task, by name, with the versions that know it."""
-        with self._lock:
-            known = {**self._shipped, **self._added}
-        only_rules = {task for rules in self._rules.values() for task in rules["tasks"]} - set(
-            known
-        )
-        known |= {name: TaskDefinition(name=name) for name in only_rules}
-        return tuple(self._task(known[name]) for name in sorted(known))
+        with self._reading() as learned:
+            ruled = learned.tasks_with_rules()
+            known = {name: TaskDefinition(name=name) for name in self._shipped.ruled_tasks | ruled}
+            known |= {**self._shipped.tasks, **learned.tasks}
+            return tuple(self._task(known[name], ruled) for name in sorted(known))
 
     def affordances(self) -> tuple[Affordance, ...]:
         """Return every affordance, by name."""
-        return tuple(self._affordances.values())
+        with self._reading() as learned:
+            known = {**self._shipped.affordances, **learned.affordances}
+            return tuple(known[name] for name in sorted(known))
 
-    def add(self, definition: TaskDefinition) -> Task:
+    def rules(self) -> RuleList:
+        """Return the learned rules by name, and the words to write further ones."""
+        with self._reading() as learned:
+            clauses = self._memory.clauses()
+            rules = [
+                Rule(**dict(learned.rules[name]), prolog=clauses[name])
+                for name in sorted(learned.rules)
+            ]
+        return RuleList(rules=tuple(rules), vocabulary=self._words)
+
+    def add_task(self, definition: TaskDefinition) -> Task:
         """Add a Version 2 task; the next request knows it, and so does the next start.
 
         Raises
@@ -87,15 +93,11 @@ class Knowledge:
         StageUnavailable
             It cannot be stored.
         """
-        definition = checked(definition, self._affordances)
-        with self._lock:
-            self._refuse_taken(definition.name)
-            self._store.write(definition)
-            self._prolog.ask("learn", knowledge=self.name, triples=triples_of([definition]))
-            self._added = {**self._added, definition.name: definition}
-        return self._task(definition)
+        with self._reading() as learned:
+            (admitted,) = self._memory.change(Change(tasks=(definition,))).tasks
+            return self._task(admitted, learned.tasks_with_rules())
 
-    def delete(self, name: str) -> Task:
+    def delete_task(self, name: str) -> Task:
         """Forget a task that was added.
 
         Raises
@@ -103,31 +105,147 @@ class Knowledge:
         NotFound
             There is no such task.
         Conflict
-            It is part of the shipped knowledge.
+            It is part of the shipped knowledge, or only known by a taught rule.
         StageUnavailable
             It cannot be removed from the store.
         """
-        with self._lock:
-            if name in self._shipped or name in self._ruled_tasks():
+        with self._reading() as learned:
+            if name in self._shipped.task_names:
+                raise _is_shipped("task", name)
+            gone = learned.tasks.get(name)
+            rules = [each.name for each in learned.rules.values() if each.task == name]
+            if gone is None and rules:
                 raise Conflict(
-                    f"the task {name!r} is part of the shipped knowledge and cannot be deleted",
+                    f"the task {name!r} is known by the taught rules {listed(rules)}; "
+                    "it goes with them",
                     task=name,
+                    rules=rules,
                 )
-            if name not in self._added:
-                raise NotFound(
-                    f"there is no task {name!r} to delete", task=name, added=sorted(self._added)
-                )
-            self._store.remove(name)
-            self._prolog.ask("forget", knowledge=self.name, subject=name)
-            gone = self._added[name]
-            self._added = {key: task for key, task in self._added.items() if key != name}
-        return self._task(gone)
+            if gone is None:
+                added = sorted(learned.tasks)
+                raise NotFound(f"there is no task {name!r} to delete", task=name, added=added[:100])
+            task = self._task(gone, learned.tasks_with_rules())
+            self._memory.change(Change(forget_tasks=(name,)))
+            return task
+
+    def add_affordance(self, definition: AffordanceDefinition) -> Affordance:
+        """Add an affordance with the rules that find it.
+
+        Raises
+        ------
+        InvalidInput, Conflict, StageUnavailable
+            As for rules; nothing of it is kept.
+        """
+        affordance = Affordance(name=definition.name, description=definition.description)
+        rules = tuple(
+            RuleDefinition(**dict(body), affordance=definition.name) for body in definition.rules
+        )
+        self._memory.change(Change(affordances=(affordance,), rules=rules))
+        return affordance
+
+    def delete_affordance(self, name: str) -> Affordance:
+        """Forget an affordance that was added, and its rules.
+
+        Raises
+        ------
+        NotFound
+            There is no such affordance.
+        Conflict
+            It is part of the shipped knowledge, or a task or a rule asks for it.
+        """
+        with self._reading() as learned:
+            if name in self._shipped.affordances:
+                raise _is_shipped("affordance", name)
+            gone = learned.affordances.get(name)
+            rules = tuple(each.name for each in learned.rules_for(name))
+            self._memory.change(Change(forget_affordances=(name,), forget_rules=rules))
+            assert gone is not None, "an unknown name was refused"
+            return gone
+
+    def add_rule(self, definition: RuleDefinition) -> Rule:
+        """Teach a rule for a Version 1 task or a Version 2 affordance.
+
+        Raises
+        ------
+        InvalidInput
+            A word, an affordance or a value that cannot be used, or bounds that
+            no part satisfies.
+        Conflict
+            The name is taken, or affordances would ask for each other in a circle.
+        StageUnavailable
+            It cannot be stored.
+        """
+        with self._reading():
+            (admitted,) = self._memory.change(Change(rules=(definition,))).rules
+            return self._rule(admitted)
+
+    def delete_rule(self, name: str) -> Rule:
+        """Forget a taught rule.
+
+        Raises
+        ------
+        NotFound
+            There is no such rule.
+        Conflict
+            It is the last rule of an affordance.
+        """
+        with self._reading() as learned:
+            rule = learned.rules.get(name)
+            gone = None if rule is None else self._rule(rule)
+            self._memory.change(Change(forget_rules=(name,)))
+            assert gone is not None, "an unknown name was refused"
+            return gone
+
+    def graph(self) -> Graph:
+        """Return all that is known as one ontology."""
+        with self._reading() as learned:
+            copy = learned.after(Change())
+        return graph_of(self._shipped, copy, self._affordance_words)
+
+    def version(self) -> int:
+        """Return another number after every change."""
+        with self._reading():
+            return self._memory.version
+
+    def export(self) -> KnowledgeDocument:
+        """Return all that is known as Turtle."""
+        return KnowledgeDocument(turtle=self.graph().serialize(format="turtle"))
+
+    def take_over(self, wanted: KnowledgeImport) -> KnowledgeImported:
+        """Learn what a document holds: all of it, or nothing.
+
+        What is known already and the same is passed over.
+
+        Raises
+        ------
+        InvalidInput
+            It is not Turtle, or something in it cannot be used; see `add_task`,
+            `add_rule`.
+        Conflict
+            It does not agree with what is shipped, or, unless it replaces what was
+            learned, with that.
+        """
+        document = read_document(wanted.turtle, self._shipped, self._affordance_words)
+        change = document.change.model_copy(update={"clear": wanted.replace})
+        with self._reading() as learned:
+            if not wanted.replace:
+                change = _without_known(change, learned)
+            self._memory.change(change)
+        return KnowledgeImported(
+            tasks=tuple(each.name for each in change.tasks),
+            affordances=tuple(each.name for each in change.affordances),
+            rules=tuple(each.name for each in change.rules),
+            ignored=document.ignored,
+        )
 
     def unknown(self, asked: str, version: Version, rule_set: RuleSet) -> UnknownTask:
         """Return the error for a task that `version` does not know."""
+        tasks = self.tasks()
+        with self._reading() as learned:
+            ruled = {*self._shipped.rule_sets[rule_set].tasks, *learned.tasks_with_rules()}
         by_version: dict[Version, list[str]] = {
-            "v1": sorted(self._rules[rule_set]["tasks"]),
-            "v2": [task.name for task in self.tasks() if "v2" in task.reasoning],
+            "v1": sorted(ruled),
+            "v2": [task.name for task in tasks if "v2" in task.reasoning],
         }
         known = by_version[version]
         others = [other for other, names in by_version.items() if asked in names]
@@ -148,42 +266,45 @@ class Knowledge:
             known_to=others,
         )
 
-    def _task(self, definition: TaskDefinition) -> Task:
+    @contextlib.contextmanager
+    def _reading(self) -> Iterator[Learned]:
+        """Give what was learned, as it is now, while nobody changes it."""
+        with self._memory.lock:
+            self._memory.refresh()
+            yield self._memory.learned
+
+    def _rule(self, definition: RuleDefinition) -> Rule:
+        clauses = self._memory.clauses(definition.name)
+        return Rule(**dict(definition), prolog=clauses[definition.name])
+
+    def _task(self, definition: TaskDefinition, ruled: set[str]) -> Task:
         name = definition.name
-        versions: list[Version] = ["v1"] if name in self._ruled_tasks() else []
+        by_rule = name in self._shipped.ruled_tasks or name in ruled
+        versions: list[Version] = ["v1"] if by_rule else []
         if definition.grasp or definition.avoids:
             versions.append("v2")
         return Task(
             **dict(definition),
             reasoning=tuple(versions),
-            builtin=name in self._shipped or name in self._ruled_tasks(),
+            builtin=name in self._shipped.task_names,
         )
 
-    def _ruled_tasks(self) -> set[str]:
-        return {task for rules in self._rules.values() for task in rules["tasks"]}
 
-    def _refuse_taken(self, name: str) -> None:
-        if name in self._shipped or name in self._added or name in self._ruled_tasks():
-            raise Conflict(f"there is a task {name!r} already", field="name", found=name)
-        if name in self._affordances:
-            raise Conflict(
-                f"{name!r} is the name of an affordance; a task needs another",
-                field="name",
-                found=name,
-            )
+def _without_known(change: Change, learned: Learned) -> Change:
+    """Return `change` without what is learned already just as it says."""
+    return change.model_copy(
+        update={
+            "tasks": tuple(e for e in change.tasks if learned.tasks.get(e.name) != e),
+            "affordances": tuple(
+                e for e in change.affordances if learned.affordances.get(e.name) != e
+            ),
+            "rules": tuple(e for e in change.rules if learned.rules.get(e.name) != e),
+        }
+    )
 
-    def _check(self) -> None:
-        for rule_set, rules in self._rules.items():
-            without = sorted(set(self._affordances) ^ set(rules["affordances"]))
-            if without:
-                raise InternalError(
-                    f"rule set {rule_set!r} and the ontology do not agree on {listed(without)}: "
-                    "each affordance needs a rule, and each rule an affordance"
-                )
-        for name, task in {**self._shipped, **self._added}.items():
-            try:
-                checked(task, self._affordances)
-            except InvalidInput as error:
-                raise InternalError(f"the task {name!r} is not usable: {error.message}") from error
-        if both := sorted((set(self._shipped) | set(self._affordances)) & set(self._added)):
-            raise InternalError(f"added tasks with the name of shipped knowledge: {listed(both)}")
+
+def _is_shipped(kind: str, name: str) -> Conflict:
+    return Conflict(
+        f"the {kind} {name!r} is part of the shipped knowledge and cannot be deleted",
+        **{kind: name},
+    )

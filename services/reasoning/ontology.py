@@ -70,11 +70,22 @@ def _imported(folder: Path, iri: object, importer: Path) -> Path:
 
 
 def affordances_in(graph: Graph) -> dict[str, Affordance]:
-    """Return the affordances by name, sorted."""
+    """Return the affordances by name, sorted.
+
+    Raises
+    ------
+    InternalError
+        An affordance whose name cannot be used; says which.
+    """
     names = sorted(_local_name(each) for each in graph.subjects(RDF.type, SPARGE.Affordance))
-    return {
-        name: Affordance(name=name, description=_comment(graph, SPARGE[name])) for name in names
-    }
+    return {name: _affordance(graph, name) for name in names}
+
+
+def _affordance(graph: Graph, name: str) -> Affordance:
+    try:
+        return Affordance(name=name, description=_comment(graph, SPARGE[name]))
+    except ValidationError as error:
+        raise InternalError(f"the ontology's affordance {name!r} is not usable: {error}") from error
 
 
 def tasks_in(graph: Graph) -> dict[str, TaskDefinition]:
@@ -100,20 +111,25 @@ def _task(graph: Graph, name: str) -> TaskDefinition:
         raise InternalError(f"the ontology's task {name!r} is not usable: {error}") from error
 
 
-def graph_of(task: TaskDefinition) -> Graph:
-    """Return the statements about one task, as in ontology/tasks.ttl."""
-    graph = Graph()
-    graph.bind("", SPARGE)
-    graph.bind("owl", OWL)
-    subject = SPARGE[task.name]
-    graph.add((subject, RDF.type, OWL.NamedIndividual))
-    graph.add((subject, RDF.type, SPARGE.Task))
-    graph.add((subject, RDFS.label, Literal(task.name.replace("_", " "))))
-    if task.description:
-        graph.add((subject, RDFS.comment, Literal(task.description)))
+def add_task(graph: Graph, task: TaskDefinition) -> None:
+    """Add the statements about one task, as in ontology/tasks.ttl."""
+    _add_individual(graph, SPARGE.Task, task.name, task.description)
     for property_, affordance in _relations(task):
-        graph.add((subject, property_, SPARGE[affordance]))
-    return graph
+        graph.add((SPARGE[task.name], property_, SPARGE[affordance]))
+
+
+def add_affordance(graph: Graph, affordance: Affordance) -> None:
+    """Add the statements about one affordance, as in ontology/affordances.ttl."""
+    _add_individual(graph, SPARGE.Affordance, affordance.name, affordance.description)
+
+
+def _add_individual(graph: Graph, kind: URIRef, name: str, description: str) -> None:
+    subject = SPARGE[name]
+    graph.add((subject, RDF.type, OWL.NamedIndividual))
+    graph.add((subject, RDF.type, kind))
+    graph.add((subject, RDFS.label, Literal(name.replace("_", " "))))
+    if description:
+        graph.add((subject, RDFS.comment, Literal(description)))
 
 
 def triples_of(tasks: Iterable[TaskDefinition]) -> list[Triple]:

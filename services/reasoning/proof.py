@@ -7,6 +7,8 @@ from typing import Any
 from shared.errors import JsonObject
 from shared.schemas.task import Condition, RuleTrace
 
+_UNITS = {"m": " m", "m3": " m3", "deg": " degrees", "count": "", "ratio": ""}
+
 
 def trace_of(trace: JsonObject) -> RuleTrace:
     """Return one tried rule with its conditions."""
@@ -49,6 +51,19 @@ def _texts(condition: JsonObject) -> tuple[str, str]:
         case "distinct":
             first, second = measured
             return f"part {first}, part {second}", "two different parts"
+        case "at_least" | "at_most" if measured is not None:
+            sign, unit = (">=" if kind == "at_least" else "<="), _UNITS[condition["unit"]]
+            return f"{measured:.4g}{unit}", f"{sign} {required:.4g}{unit}"
+        case "meets":
+            return ("touching" if condition["holds"] else "apart"), "touching"
+        case "absent":
+            state = "does not count as" if condition["holds"] else "counts as"
+            if condition["part"] is None:
+                state = "no part counts as" if condition["holds"] else "a part counts as"
+                return f"{state} {measured}", f"no {measured}"
+            return f"part {condition['part']} {state} {measured}", f"not {measured}"
+        case "alone":
+            return f"nothing but parts {measured}", f"parts that count as {required[0]}"
         case "relation":
             part = condition["part"]
             return f"part {part} counts as {measured}", f"a part that counts as {required[0]}"

@@ -5,16 +5,40 @@ from __future__ import annotations
 import threading
 from typing import get_args
 
+from services.reasoning.admission import Admission
+from services.reasoning.enquiry import Enquiry
 from services.reasoning.explanation import explain_found, explain_miss
-from services.reasoning.facts import facts_of
+from services.reasoning.facts import facts_of, layout_facts
 from services.reasoning.knowledge import Knowledge
+from services.reasoning.memory import Memory
 from services.reasoning.prolog import Prolog, prolog
 from services.reasoning.proof import trace_of
 from services.reasoning.reasons import reason_for
 from services.reasoning.settings import ReasoningSettings
+from services.reasoning.shipped import RuleFiles, read_shipped
 from shared.errors import JsonObject
+from shared.schemas.knowledge import (
+    AskQuestion,
+    KnowledgeDocument,
+    KnowledgeImport,
+    KnowledgeImported,
+    QuestionAnswer,
+    QuestionList,
+    SparqlAnswer,
+    SparqlQuery,
+)
 from shared.schemas.route import Nothing
+from shared.schemas.rule import (
+    AffordanceDefinition,
+    AffordanceName,
+    Rule,
+    RuleDefinition,
+    RuleList,
+    RuleName,
+    Word,
+)
 from shared.schemas.task import (
+    Affordance,
     AffordanceList,
     DecideRequest,
     DecideResponse,
@@ -41,6 +65,7 @@ class Reasoner:
         self._settings = settings
         self._lock = threading.Lock()
         self._ready: tuple[Prolog, Knowledge] | None = None
+        self._enquiry: Enquiry | None = None
 
     def warm_up(self) -> None:
         """Start Prolog, load the rules, the ontology and the added tasks; once.
@@ -57,6 +82,9 @@ class Reasoner:
     def close(self) -> None:
         """Forget this reasoner's knowledge; the process keeps its Prolog."""
         with self._lock:
+            if self._enquiry is not None:
+                self._enquiry.close()
+                self._enquiry = None
             if self._ready is not None:
                 self._ready[1].close()
                 self._ready = None
@@ -74,6 +102,7 @@ class Reasoner:
             Prolog came to no end.
         """
         engine, knowledge = self._warm()
+        knowledge.refresh()
         decision = engine.ask(
             "decide",
             timeout_s=self._settings.max_wait_s,
@@ -83,6 +112,7 @@ class Reasoner:
             task=request.task,
             max_inferences=self._settings.max_inferences,
             parts=facts_of(request.primitives, self._settings.max_primitives),
+            layout=layout_facts(request.primitives, request.joints, request.plane),
         )
         if decision["outcome"] == "unknown_task":
             raise knowledge.unknown(request.task, request.reasoning, request.rule_set)
@@ -93,27 +123,83 @@ class Reasoner:
         return TaskList(tasks=self._warm()[1].tasks())
 
     def add_task(self, definition: TaskDefinition) -> Task:
-        """Add a Version 2 task; see `Knowledge.add`."""
-        return self._warm()[1].add(definition)
+        """Add a Version 2 task; see `Knowledge.add_task`."""
+        return self._warm()[1].add_task(definition)
 
     def delete_task(self, task: TaskName) -> Task:
-        """Delete an added task; see `Knowledge.delete`."""
-        return self._warm()[1].delete(task.name)
+        """Delete an added task; see `Knowledge.delete_task`."""
+        return self._warm()[1].delete_task(task.name)
 
     def list_affordances(self, _: Nothing) -> AffordanceList:
         """Return every part affordance."""
         return AffordanceList(affordances=self._warm()[1].affordances())
 
+    def add_affordance(self, definition: AffordanceDefinition) -> Affordance:
+        """Add an affordance with its rules; see `Knowledge.add_affordance`."""
+        return self._warm()[1].add_affordance(definition)
+
+    def delete_affordance(self, affordance: AffordanceName) -> Affordance:
+        """Delete an added affordance; see `Knowledge.delete_affordance`."""
+        return self._warm()[1].delete_affordance(affordance.name)
+
+    def list_rules(self, _: Nothing) -> RuleList:
+        """Return the taught rules and the vocabulary."""
+        return self._warm()[1].rules()
+
+    def add_rule(self, definition: RuleDefinition) -> Rule:
+        """Teach a rule; see `Knowledge.add_rule`."""
+        return self._warm()[1].add_rule(definition)
+
+    def delete_rule(self, rule: RuleName) -> Rule:
+        """Forget a taught rule; see `Knowledge.delete_rule`."""
+        return self._warm()[1].delete_rule(rule.name)
+
+    def export_knowledge(self, _: Nothing) -> KnowledgeDocument:
+        """Return all that is known as Turtle."""
+        return self._warm()[1].export()
+
+    def import_knowledge(self, wanted: KnowledgeImport) -> KnowledgeImported:
+        """Learn from a Turtle document; see `Knowledge.take_over`."""
+        return self._warm()[1].take_over(wanted)
+
+    def query_knowledge(self, asked: SparqlQuery) -> SparqlAnswer:
+        """Answer a SPARQL query; see `Enquiry.query`."""
+        return self._enquiring().query(asked)
+
+    def list_questions(self, _: Nothing) -> QuestionList:
+        """Return the questions of the ontology."""
+        return self._enquiring().questions()
+
+    def ask_question(self, asked: AskQuestion) -> QuestionAnswer:
+        """Answer one of them; see `Enquiry.ask`."""
+        return self._enquiring().ask(asked)
+
+    def _enquiring(self) -> Enquiry:
+        self._warm()
+        assert self._enquiry is not None
+        return self._enquiry
+
     def _warm(self) -> tuple[Prolog, Knowledge]:
         with self._lock:
             if self._ready is None:
                 engine = prolog(self._settings.rules_dir)
-                rules = {
-                    rule_set: engine.ask("load", directory=str(engine.rules_dir), rule_set=rule_set)
-                    for rule_set in get_args(RuleSet)
-                }
-                self._ready = engine, Knowledge(self._settings, engine, rules)
+                knowledge = _knowledge(self._settings, engine)
+                self._enquiry = Enquiry(self._settings, knowledge)
+                self._ready = engine, knowledge
             return self._ready
+
+
+def _knowledge(settings: ReasoningSettings, engine: Prolog) -> Knowledge:
+    rule_sets: dict[RuleSet, RuleFiles] = {
+        rule_set: RuleFiles(
+            **engine.ask("load", directory=str(engine.rules_dir), rule_set=rule_set)
+        )
+        for rule_set in get_args(RuleSet)
+    }
+    shipped = read_shipped(settings.ontology_file, rule_sets)
+    words = tuple(Word.model_validate(word) for word in engine.ask("vocabulary")["words"])
+    admission = Admission(shipped, {word.name: word for word in words}, settings.max_learned)
+    return Knowledge(Memory(settings, engine, admission), shipped, words)
 
 
 def _response(request: DecideRequest, decision: JsonObject) -> DecideResponse:

@@ -4,16 +4,11 @@ from __future__ import annotations
 
 from collections.abc import Sequence
 
+from services.reasoning.phrases import measured_as, millimetres, named, value_text
 from shared.errors import JsonObject
 
 _MORE = {"thickness": "thicker", "width": "wider", "length": "longer"}
 _LESS = {"thickness": "thinner", "width": "narrower", "length": "shorter"}
-
-
-def millimetres(metres: float) -> str:
-    """Return a length in mm; a difference that would round to nothing keeps its digits."""
-    value = metres * 1e3
-    return f"{value:.0f}" if value >= 10 else f"{value:.2g}"
 
 
 def apart(value: float, bound: float) -> str:
@@ -53,6 +48,14 @@ def holding_clause(condition: JsonObject) -> str:
             return "is the smallest part"
         case "shape":
             return f"is a {condition['measured']}"
+        case "at_least" | "at_most":
+            bound = f"{_limit(kind)} {value_text(required, condition['unit'])}"
+            value = value_text(condition["measured"], condition["unit"])
+            return f"has {measured_as(condition['quantity'], value, bound)}"
+        case "meets":
+            return f"meets part {condition['measured'][1]}"
+        case "absent" if condition["part"] is not None:
+            return f"does not count as {condition['measured']}"
         case "other":
             return f"satisfies {condition['predicate']}"
         case _:
@@ -96,7 +99,36 @@ def failing_wish(condition: JsonObject, *, own: bool) -> str:
             return f"{who} were the smallest part (it has {times:.3g} times the smallest volume)"
         case "shape":
             return f"{who} were a {' or '.join(required)} instead of a {condition['measured']}"
+        case "at_least" | "at_most" if condition["measured"] is not None:
+            return _quantity_wish(condition, who)
+        case "meets":
+            return f"{who} met part {condition['measured'][1]}"
+        case "absent" if condition["part"] is None:
+            return f"no part counted as {condition['measured']}"
+        case "absent":
+            return f"{who} did not count as {condition['measured']}"
         case "distinct":
             return "the object had another part for the other role"
         case _:
             return f"{condition['predicate']} held"
+
+
+def _limit(kind: str) -> str:
+    return "at least" if kind.startswith("at_least") else "at most"
+
+
+def _quantity_wish(condition: JsonObject, who: str) -> str:
+    """Return `it were 4 mm thinner (27 mm where at most 23 mm is asked)` or the like."""
+    kind, quantity, unit = condition["kind"], condition["quantity"], condition["unit"]
+    found, required = condition["measured"], condition["required"]
+    asked = f"{_limit(kind)} {value_text(required, unit)}"
+    if unit == "m" and quantity[0] in _MORE:
+        word = (_MORE if kind == "at_least" else _LESS)[quantity[0]]
+        by = value_text(abs(found - required), unit)
+        value = apart(found * 1e3, required * 1e3)
+        return f"{who} were {by} {word} ({value} mm where {asked} is asked)"
+    value = value_text(found, unit)
+    if value == value_text(required, unit):
+        value = apart(found, required)
+    whose = "its" if who == "it" else f"{who}'s"
+    return f"{named(quantity, whose)} were {asked} (it is {value})"

@@ -8,7 +8,7 @@ from pydantic import Field
 
 from shared.schemas.fields import Direction
 from shared.schemas.grasp import Pose
-from shared.schemas.primitive import Primitive
+from shared.schemas.primitive import Method, Primitive
 from shared.schemas.scene import SupportPlane
 from shared.schemas.task import Explanation, Reason, Region, Version
 from shared.wire import Message
@@ -41,6 +41,8 @@ class Scene(Message):
     object_points: int
     clusters: int
     dropped: dict[str, int]
+    method: Method
+    """How the object was cut into parts."""
     removed_as_overlap: int
     candidates: int
     """Hand poses that were considered."""

@@ -13,7 +13,8 @@ from shared.schemas.scene import SupportPlane
 from shared.wire import Message
 
 Version = Literal["v1", "v2"]
-RuleSet = Literal["thesis"]
+RuleSet = Literal["thesis", "default"]
+"""The rules as published (Code A.1, A.2), or those that also look at how the parts lie."""
 
 
 class Reason(Message):
@@ -75,7 +76,7 @@ class DecideRequest(Message):
 
     task: TaskText
     reasoning: Version = "v2"
-    rule_set: RuleSet = "thesis"
+    rule_set: RuleSet = "default"
     primitives: tuple[Primitive, ...]
     joints: tuple[Joint, ...] = ()
     """Which parts meet, where the recovery knows."""

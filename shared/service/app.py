@@ -2,8 +2,8 @@
 
 from __future__ import annotations
 
-from collections.abc import Awaitable, Callable
-from contextlib import AbstractAsyncContextManager
+from collections.abc import AsyncIterator, Awaitable, Callable
+from contextlib import AbstractAsyncContextManager, asynccontextmanager
 from typing import Literal
 
 from fastapi import FastAPI
@@ -13,6 +13,7 @@ from pydantic import BaseModel
 from shared import __version__
 from shared.service.context import RequestContext
 from shared.service.envelope import install_error_handlers
+from shared.service.memory import keep_freed_memory
 from shared.service.telemetry import Metrics
 from shared.settings import ServiceSettings
 
@@ -57,7 +58,14 @@ def create_base(
     ready : callable
         Asked by `/health/ready`; only status `ready` answers 200.
     """
-    app = FastAPI(title=f"SPaRGE {name}", summary=summary, version=__version__, lifespan=lifespan)
+
+    @asynccontextmanager
+    async def running(app: FastAPI) -> AsyncIterator[None]:
+        keep_freed_memory()
+        async with lifespan(app):
+            yield
+
+    app = FastAPI(title=f"SPaRGE {name}", summary=summary, version=__version__, lifespan=running)
     metrics = Metrics(name)
     app.state.metrics = metrics
     app.add_middleware(

@@ -88,7 +88,9 @@ def compose(route: Route[In, Out], request: In) -> dict[str, Any]:
         path = path.replace(f"{{{name}}}", str(getattr(request, name)))
     headers = {"Accept": NPZ, REQUEST_ID_HEADER: request_id.get()}
     if route.method != "POST":
-        return {"method": route.method, "url": path, "headers": headers}
+        fields = request.model_dump(mode="json", exclude_none=True)
+        params = {name: text for name, text in fields.items() if f"{{{name}}}" not in route.path}
+        return {"method": route.method, "url": path, "headers": headers, "params": params}
     return {
         "method": route.method,
         "url": path,

@@ -39,7 +39,7 @@ def describe(app: FastAPI, routes: Sequence[Route[Any, Any]]) -> None:
                     operation["requestBody"] = {"required": True, "content": content(route.request)}
                     operation.pop("parameters", None)
                 else:
-                    operation["parameters"] = _path_parameters(route)
+                    operation["parameters"] = _parameters(route)
                 operation["responses"] = {
                     "200": {"description": "The answer", "content": content(route.response)},
                     **error_responses(),
@@ -82,10 +82,13 @@ def error_responses(codes: Sequence[str] = tuple(_ERRORS)) -> dict[str, Any]:
     return {code: {"description": _ERRORS[code], "content": envelope} for code in codes}
 
 
-def _path_parameters(route: Route[Any, Any]) -> list[dict[str, Any]]:
-    properties = route.request.model_json_schema().get("properties", {})
+def _parameters(route: Route[Any, Any]) -> list[dict[str, Any]]:
+    """Return what stands in the path and in the query string of a GET or DELETE."""
+    schema = route.request.model_json_schema()
+    required = schema.get("required", [])
     return [
-        {"name": name, "in": "path", "required": True, "schema": schema}
-        for name, schema in properties.items()
+        {"name": name, "in": "path", "required": True, "schema": each}
         if f"{{{name}}}" in route.path
+        else {"name": name, "in": "query", "required": name in required, "schema": each}
+        for name, each in schema.get("properties", {}).items()
     ]

@@ -36,7 +36,9 @@ def serve(
                 settings.max_unpacked_bytes,
             )
         else:
-            message = validate(route.request, dict(request.path_params))
+            known = route.request.model_fields
+            query = {name: text for name, text in request.query_params.items() if name in known}
+            message = validate(route.request, {**query, **request.path_params})
         return await respond(await answer(message), request)
 
     app.add_api_route(

@@ -21,8 +21,15 @@ from shared.schemas.grasp import (
     RegionRequest,
     SelectRequest,
 )
+from shared.schemas.knowledge import (
+    EXPORT_KNOWLEDGE,
+    LIST_QUESTIONS,
+    QUERY_KNOWLEDGE,
+    SparqlQuery,
+)
 from shared.schemas.primitive import RECOVER, RecoverRequest
 from shared.schemas.route import Nothing, Route
+from shared.schemas.rule import LIST_RULES
 from shared.schemas.scene import PERCEIVE, PerceiveRequest
 from shared.schemas.task import DECIDE, LIST_AFFORDANCES, LIST_TASKS, DecideRequest
 from shared.wire import NPZ, Message, decode, encode
@@ -31,8 +38,15 @@ from tests.support.serving import Client, in_process, over_socket
 
 LIMIT = 10**9
 TRANSPORTS = {"in_process": in_process, "socket": over_socket}
-POSTED = (PERCEIVE, RECOVER, DECIDE, FIND_REGION, PROPOSE, SELECT, EXECUTE)
-LISTED = (LIST_TASKS, LIST_AFFORDANCES, LIST_GRIPPERS)
+POSTED = (PERCEIVE, RECOVER, DECIDE, QUERY_KNOWLEDGE, FIND_REGION, PROPOSE, SELECT, EXECUTE)
+LISTED = (
+    LIST_TASKS,
+    LIST_AFFORDANCES,
+    LIST_RULES,
+    LIST_QUESTIONS,
+    EXPORT_KNOWLEDGE,
+    LIST_GRIPPERS,
+)
 
 
 @dataclass(frozen=True)
@@ -103,6 +117,7 @@ def examples(stages: Stages) -> dict[Route[Any, Any], Message]:
         PERCEIVE: perceive,
         RECOVER: recover,
         DECIDE: DecideRequest(task="cooking", primitives=primitives),
+        QUERY_KNOWLEDGE: SparqlQuery(query="ASK { ?task ?relation ?affordance }"),
         FIND_REGION: region,
         PROPOSE: propose,
         SELECT: SelectRequest(

@@ -1,8 +1,8 @@
-"""One backend and a few views for all experiments; both take seconds to make."""
+"""What all experiments are tested with: the backend's public client, and a few views."""
 
 from __future__ import annotations
 
-from collections.abc import Callable, Iterator
+from collections.abc import Callable
 from pathlib import Path
 
 import pytest
@@ -11,8 +11,8 @@ from rich.console import Console
 from experiments.dataset import DatasetOptions, make_dataset
 from experiments.framework import Context, ViewSet
 from experiments.framework.views import scan_sets
-from services.cli.experiment import own_backend
 from shared.client import Sparge
+from tests.support.serving import Client
 
 SHOWN = ("bottle1", "can1", "hammer1", "knife1")
 
@@ -20,9 +20,8 @@ MakeContext = Callable[..., Context]
 
 
 @pytest.fixture(scope="session")
-def sparge() -> Iterator[Sparge]:
-    with own_backend(None) as backend:
-        yield backend
+def sparge(backend: Client) -> Sparge:
+    return Sparge(backend.request)
 
 
 @pytest.fixture(scope="session")

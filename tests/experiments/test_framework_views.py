@@ -2,13 +2,17 @@
 
 from __future__ import annotations
 
+from collections.abc import Sequence
 from pathlib import Path
 
 import numpy as np
 import pytest
+from rich.console import Console
 
-from experiments.framework import ViewSet
-from experiments.framework.views import NOT_AFFORDED, Thing, catalogue_set, load, scan_sets
+from experiments.framework import Experiment, Findings, ViewSet
+from experiments.framework.catalogue_views import catalogue_sets
+from experiments.framework.conduct import view_sets
+from experiments.framework.views import NOT_AFFORDED, Thing, load, scan_sets
 from shared.errors import InvalidInput
 
 
@@ -83,10 +87,64 @@ def test_the_catalogues_views_are_kept(tmp_path: Path, monkeypatch: pytest.Monke
     told: list[tuple[int, int]] = []
     for _ in range(2):
         told.clear()
-        views = catalogue_set(
+        (views,) = catalogue_sets(
             tmp_path, 1, 0, progress=lambda done, total: told.append((done, total))
         )
         made.append(len(told))
         assert views.is_catalogue
         assert [file.object_name for file in views.files] == ["can1"]
     assert made == [2, 1]  # nothing is rendered the second time
+
+
+def test_variants_and_noise_make_sets_of_their_own(
+    tmp_path: Path, monkeypatch: pytest.MonkeyPatch
+) -> None:
+    monkeypatch.setattr("experiments.dataset.choice.CATALOGUE", {"can1": None})
+    sets = catalogue_sets(tmp_path, 2, 0, noisy=1, variants=1)
+    held = {each.name: [(file.object_name, file.number) for file in each.files] for each in sets}
+    assert held == {
+        "catalogue": [("can1", 0), ("can1", 1)],
+        "variants": [("can-v0", 0), ("can-v0", 1)],
+        "catalogue, noisy": [("can1", 0)],
+        "variants, noisy": [("can-v0", 0)],
+    }
+    assert all(each.thing(each.files[0]).class_name == "can" for each in sets)
+    assert all(each.objects["can-v0"].class_name == "can" for each in sets)
+    clean, noisy = (load(each.files[0]) for each in (sets[0], sets[2]))
+    assert (clean.view.depth != noisy.view.depth).mean() > 0.1
+    np.testing.assert_array_equal(clean.view.camera_from_object, noisy.view.camera_from_object)
+
+
+def test_an_experiment_gets_the_views_that_it_needs(
+    tmp_path: Path, views_folder: Path, monkeypatch: pytest.MonkeyPatch
+) -> None:
+    monkeypatch.setattr("experiments.dataset.choice.CATALOGUE", {"can1": None})
+
+    def names(
+        catalogue: bool, scans: Sequence[Path] = (), *, noisy_views: int = 0, variants: int = 0
+    ) -> list[str]:
+        sets = view_sets(
+            Experiment(
+                "it",
+                "",
+                "",
+                lambda _: Findings("", ()),
+                noisy_views=noisy_views,
+                variants=variants,
+            ),
+            tmp_path,
+            scans,
+            catalogue=catalogue,
+            limit=1,
+            seed=0,
+            console=Console(quiet=True),
+        )
+        assert all(len(each.limited(1).files) == len(each.files) for each in sets)
+        return [each.name for each in sets]
+
+    assert names(True) == ["catalogue"]
+    assert names(True, [views_folder], noisy_views=5) == [
+        "catalogue", "catalogue, noisy", "views_clean",
+    ]  # fmt: skip
+    assert names(True, variants=1) == ["catalogue", "variants"]
+    assert names(False, [views_folder], variants=1) == ["views_clean"]

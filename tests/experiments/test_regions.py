@@ -15,6 +15,8 @@ from experiments.framework.views import load
 from experiments.regions.experiment import REGIONS, run
 from tests.experiments.conftest import MakeContext
 
+RUN = {"date": "today", "command": "sparge experiment regions", "machine": "this one"}
+
 
 def test_regions_of_two_views(make_context: MakeContext, tmp_path: Path) -> None:
     context = make_context("bottle1", "can1")
@@ -33,7 +35,7 @@ def test_regions_of_two_views(make_context: MakeContext, tmp_path: Path) -> None
     assert [plot.name for plot in findings.plots] == [
         "found-and-good-0", "iou", "examples-v1", "examples-v2",
     ]  # fmt: skip
-    page = save(tmp_path, REGIONS, findings, {"seed": "0"})
+    page = save(tmp_path, REGIONS, findings, RUN)
     text = (tmp_path / "regions" / "requests.csv").read_text(encoding="utf-8")
     requests = list(csv.DictReader(text.splitlines()))
     assert len(requests) == 2 * 3 + 2 * 8

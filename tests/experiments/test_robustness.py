@@ -2,22 +2,26 @@
 
 from __future__ import annotations
 
+from dataclasses import replace
+
 import numpy as np
 import pytest
 
+from experiments.catalogue import build, variant
 from experiments.framework import Share, ViewSet
 from experiments.framework.views import ShownView, load
 from experiments.robustness.disturbances import (
     AS_IT_IS,
     CONDITIONS,
     OCCLUDED,
-    SCALES,
+    OTHER_SIZE,
     occluded,
-    rescaled,
     with_half_the_points,
     with_noise,
 )
 from experiments.robustness.experiment import run
+from experiments.robustness.sizes import largest_extent, of_other_size, scaled
+from shared.geometry.se3 import inverse, transform_points
 from tests.experiments.conftest import MakeContext
 
 
@@ -53,11 +57,46 @@ def test_noise_grows_with_its_factor(view: ShownView) -> None:
     assert errors[2] / errors[0] == pytest.approx(4, rel=0.25)
 
 
-def test_another_size_is_the_same_scene_scaled(view: ShownView, rng: np.random.Generator) -> None:
-    other = rescaled(view, rng)
-    factor = other.depth_scale / view.depth_scale
-    assert SCALES[0] <= factor <= SCALES[1]
-    np.testing.assert_allclose(other.object_points, factor * view.object_points)
+def extents(view: ShownView) -> np.ndarray:
+    """Return the reach of what is seen along the world's axes (3,)."""
+    world_from_camera = inverse(view.view.camera_from_world)
+    points = view.object_points[np.isfinite(view.object_points).all(axis=1)]
+    return np.asarray(np.ptp(transform_points(world_from_camera, points), axis=0))
+
+
+@pytest.mark.parametrize("seed", range(3))
+def test_another_size_is_the_same_thing_on_the_same_table(view: ShownView, seed: int) -> None:
+    other = of_other_size(view, np.random.default_rng(seed))
+    assert other is not None
+    assert other.depth_scale == view.depth_scale
+    assert other.view.table_height == view.view.table_height
+    np.testing.assert_allclose(
+        other.view.camera_from_world, view.view.camera_from_world, atol=1e-12
+    )
+    before, after = view.view.camera_from_object, other.view.camera_from_object
+    np.testing.assert_allclose(after[:3, :3], before[:3, :3], atol=1e-9)
+    thing = build(view.view.object_name)
+    drawn = variant(thing.class_name, np.random.default_rng(seed))
+    factor = largest_extent(drawn) / largest_extent(thing)
+    assert abs(factor - 1) > 0.01
+    # What is seen grows with it (a part may come into sight or go), the table does not.
+    assert (extents(other) / extents(view)).max() == pytest.approx(factor, rel=0.1)
+    np.testing.assert_array_equal(
+        *(each.view.depth[:100][each.view.label[:100] == 1][:50] for each in (view, other))
+    )
+
+
+def test_a_scaled_object_is_scaled(view: ShownView) -> None:
+    thing = build("ladle1")
+    other = scaled(thing, 1.3)
+    np.testing.assert_allclose(other.vertices, 1.3 * thing.vertices)
+    np.testing.assert_allclose(other.centre_of_mass, 1.3 * thing.centre_of_mass, atol=1e-12)
+    assert largest_extent(other) == pytest.approx(1.3 * largest_extent(thing))
+
+
+def test_what_is_not_in_the_catalogue_has_no_other_size(view: ShownView) -> None:
+    stranger = replace(view, view=replace(view.view, object_name="drill"))
+    assert of_other_size(stranger, np.random.default_rng(0)) is None
 
 
 def test_every_condition_leaves_the_view_itself_alone(view: ShownView) -> None:
@@ -72,7 +111,8 @@ def test_robustness_of_one_view(make_context: MakeContext) -> None:
     disturbances, motion = findings.tables
     assert [row[1] for row in disturbances.rows[::2]] == list(CONDITIONS)
     assert disturbances.rows[0][-1] is None
-    assert all(isinstance(row[-1], Share) for row in disturbances.rows[2:])
+    for row in disturbances.rows[2:]:
+        assert isinstance(row[-1], Share) != (row[1] == OTHER_SIZE)
     assert [row[1] for row in motion.rows] == ["v1", "v2"]
     # The law itself: the region does not depend on the frame of the input.
     for row in motion.rows:

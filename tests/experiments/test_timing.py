@@ -12,6 +12,12 @@ from shared.schemas.route import Nothing
 from shared.schemas.task import LIST_TASKS
 from tests.experiments.conftest import MakeContext
 
+WHOLE = (
+    "checking the names, beside perception",
+    "whole request, backend",
+    "client, on top",
+)
+
 
 def test_times_by_stage_and_by_number_of_tasks(make_context: MakeContext) -> None:
     context = make_context("bottle1")
@@ -19,7 +25,7 @@ def test_times_by_stage_and_by_number_of_tasks(make_context: MakeContext) -> Non
     shipped = len(before.tasks)
     findings = run(context, counts=(5, shipped + 3, shipped + 8))
     assert context.sparge.call(LIST_TASKS, Nothing()) == before
-    stages, growth = findings.tables
+    stages, breakdown, growth, limits = findings.tables
     thesis = {row[0]: (row[4], row[8]) for row in stages.rows}
     assert thesis["primitive recovery"] == ("7.6 s", "7.6 s")
     assert thesis["recovery + reasoning + matching"] == ("9.3 s", "9.4 s")
@@ -27,6 +33,16 @@ def test_times_by_stage_and_by_number_of_tasks(make_context: MakeContext) -> Non
     times = {row[0]: row[1] for row in stages.rows}
     assert all(isinstance(each, MeanStd) and each.mean > 0 for each in times.values())
     assert times["whole request, client"].mean > times["primitive recovery"].mean  # type: ignore[union-attr]
+    # The only view, its two tasks, both versions.
+    lines = {row[1]: [float(str(cell)) for cell in row[2:]] for row in breakdown.rows}
+    assert {row[0] for row in breakdown.rows} == {"views_clean"}
+    assert lines["whole request, backend"][0] == 4
+    assert lines["whole request, backend"][3] == pytest.approx(100)
+    assert "checking the names, beside perception" in lines
+    shares = [line[3] for name, line in lines.items() if name not in WHOLE]
+    assert sum(shares) == pytest.approx(100)  # the rest is what is missing
+    assert lines["client, on top"][1] > 0
+    assert all(0 < float(str(row[1])) < 1000 for row in limits.rows)
     # 5 cannot be reached from above; the shipped tasks stand for it.
     assert [row[0] for row in growth.rows] == [
         str(shipped), str(shipped + 3), str(shipped + 8), f"{shipped} again",

@@ -2,9 +2,8 @@
 
 from __future__ import annotations
 
-from collections.abc import Iterator
 from dataclasses import replace
-from itertools import permutations, product
+from itertools import permutations
 from pathlib import Path
 from typing import Any
 
@@ -14,8 +13,6 @@ from hypothesis import given
 from hypothesis import strategies as st
 from rich.console import Console
 from scipy.optimize import linear_sum_assignment
-from scipy.spatial import ConvexHull
-from scipy.spatial.transform import Rotation
 
 from experiments.catalogue import CATALOGUE, CatalogueObject, Part, build
 from experiments.catalogue.shapes import box, moved
@@ -25,7 +22,6 @@ from experiments.framework import Context, ViewSet
 from experiments.framework.plots import png
 from experiments.framework.views import Thing, things_of
 from experiments.tuning import run, study, tuning
-from experiments.tuning.boxes import smallest_box
 from experiments.tuning.cost import size_differences, view_cost
 from experiments.tuning.evaluation import tuning_views
 from experiments.tuning.expected import ExpectedPrimitive, expected_primitives
@@ -33,12 +29,11 @@ from experiments.tuning.experiment import CHECKED_ON, CLASSES, TUNED_ON, split
 from experiments.tuning.outcome import NAMES
 from experiments.tuning.space import SPACE
 from experiments.tuning.study import Trial, opened
-from services.wiring import create_app
 from shared.client import Sparge
 from shared.errors import Conflict, InvalidInput, StageUnavailable
 from shared.geometry.rotation import frame_from_z
 from shared.schemas.primitive import PRESETS, EmsParameters
-from tests.support.serving import Client, in_process
+from tests.support.serving import Client
 
 HANDLE = ExpectedPrimitive(("handle",), (0.02, 0.03, 0.2), (-0.1, 0.0, 0.0))
 HEAD = ExpectedPrimitive(("head",), (0.04, 0.05, 0.1), (0.02, 0.0, 0.01))
@@ -66,27 +61,6 @@ def test_the_smallest_box_around_what_is_held_for_the_same_tasks() -> None:
     np.testing.assert_allclose(brick.position, [0.01, 0.02, 0.03], atol=1e-9)
     np.testing.assert_allclose(feet.size, [0.02, 0.02, 0.1], rtol=1e-3)
     np.testing.assert_allclose(feet.position, [0, 0, -0.2], atol=1e-9)
-
-
-@given(st.integers(0, 2**32 - 1))
-def test_the_box_around_the_corners_of_a_box_is_that_box(seed: int) -> None:
-    rng = np.random.default_rng(seed)
-    edges, centre = np.sort(rng.uniform(0.01, 0.3, 3)), rng.uniform(-1, 1, 3)
-    rotation = Rotation.random(random_state=rng).as_matrix()
-    corners = np.array(list(product((-0.5, 0.5), repeat=3))) * edges @ rotation.T + centre
-    found_edges, found_centre = smallest_box(corners)
-    np.testing.assert_allclose(found_edges, edges, atol=1e-9)
-    np.testing.assert_allclose(found_centre, centre, atol=1e-9)
-
-
-def test_the_box_holds_all_points_and_is_smaller_than_an_upright_one(
-    rng: np.random.Generator,
-) -> None:
-    points = rng.normal(size=(200, 3)) @ rng.normal(size=(3, 3))
-    edges, _ = smallest_box(points)
-    assert edges.prod() < np.ptp(points, axis=0).prod()
-    assert edges.prod() > ConvexHull(points).volume
-    assert np.linalg.norm(edges) >= max(np.linalg.norm(a - b) for a in points for b in points)
 
 
 @pytest.mark.parametrize("name", CATALOGUE)
@@ -255,15 +229,6 @@ def test_views_that_nothing_is_known_about_are_refused() -> None:
 
 
 # All of it, on a small slice
-
-
-@pytest.fixture(scope="module")
-def backend(tmp_path_factory: pytest.TempPathFactory) -> Iterator[Client]:
-    with pytest.MonkeyPatch.context() as environment:
-        knowledge = str(tmp_path_factory.mktemp("knowledge"))
-        environment.setenv("SPARGE_REASONING_KNOWLEDGE_DIR", knowledge)
-        with in_process(create_app()) as served:
-            yield served
 
 
 @pytest.fixture(scope="module")

@@ -3,11 +3,14 @@
 from __future__ import annotations
 
 import os
+from functools import partial
 from pathlib import Path
 
 import pytest
 
 from experiments.dataset import DatasetOptions, make_dataset
+from experiments.registry import experiment as experiment_named
+from experiments.tuning.experiment import TRIALS
 from services.cli.experiment import experiment, own_backend
 from shared.errors import InvalidInput
 from shared.schemas.route import Nothing
@@ -40,10 +43,21 @@ def test_the_command_prints_tables_and_writes_the_report(
 def test_nothing_to_ask_about_is_said_before_a_backend_starts(tmp_path: Path) -> None:
     with pytest.raises(InvalidInput, match="nothing to ask about"):
         experiment("regions", catalogue=False, results=tmp_path)
-    with pytest.raises(InvalidInput, match="there are regions, grasps"):
+    with pytest.raises(InvalidInput, match="there are regions, primitives, grasps"):
         experiment("juggling", results=tmp_path)
-    with pytest.raises(InvalidInput, match="only shapes"):
+    with pytest.raises(InvalidInput, match="only shapes takes human labels, not regions"):
         experiment("regions", human_labels=tmp_path, results=tmp_path)
+    with pytest.raises(InvalidInput, match="only tuning takes trials, not shapes"):
+        experiment("shapes", trials=3, results=tmp_path)
+
+
+def test_so_many_trials_are_searched() -> None:
+    asked = experiment_named("tuning", trials=7).run
+    assert isinstance(asked, partial)
+    assert asked.keywords == {"trials": 7}
+    usual = experiment_named("tuning").run
+    assert isinstance(usual, partial)
+    assert usual.keywords == {"trials": TRIALS}
 
 
 def test_an_experiment_neither_sees_nor_keeps_tasks(

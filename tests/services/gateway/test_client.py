@@ -7,6 +7,7 @@ import pytest
 
 from shared.client import Sparge, connect
 from shared.errors import StageUnavailable, UnknownTask
+from shared.schemas.primitive import PRESETS
 from shared.schemas.route import Nothing
 from shared.schemas.task import ADD_TASK, DELETE_TASK, LIST_TASKS, TaskDefinition, TaskName
 from tests.support.samples import sample_path, sample_view
@@ -42,6 +43,19 @@ def test_parameters_reach_the_backend(sparge: Sparge) -> None:
     ).answer
     assert (answer.reasoning, answer.explanation, answer.frame_id) == ("v1", None, "head")
     assert answer.seed == 4
+
+
+def test_parameters_of_the_recovery_are_a_message_or_a_mapping(sparge: Sparge) -> None:
+    alone = PRESETS["simulation"].model_copy(update={"min_points": 100_000})
+    for recovery in (alone, alone.model_dump(), alone.model_dump_json()):
+        answer = sparge.grasp(
+            sample_view("hammer"), "hammering", recovery=recovery, max_grasps=0
+        ).answer
+        assert len(answer.primitives) == 1
+    more = sparge.grasp(
+        sample_view("hammer"), "hammering", recovery=PRESETS["simulation"], max_grasps=0
+    ).answer
+    assert len(more.primitives) > 1
 
 
 def test_errors_arrive_as_they_were_raised(sparge: Sparge) -> None:

@@ -69,7 +69,7 @@ def test_the_json_answer_holds_what_the_contract_lists(backend: Client) -> None:
         assert primitive["full_extents"] == pytest.approx(extents)
         assert primitive["shape_class"] in ("cuboid", "cylinder", "sphere")
     stages = {"perception", "primitive_recovery", "reasoning", "grasp_proposal", "matching"}
-    assert stages | {"total"} <= set(found["timings_ms"])
+    assert stages | {"parsing", "checks", "total"} == set(found["timings_ms"])
     assert found["explanation"]["text"]
     assert found["explanation"]["rules"]
 
@@ -210,9 +210,31 @@ def test_requests_side_by_side_do_not_mix(backend: Client) -> None:
 
 
 def test_parameters_of_the_recovery_reach_it(backend: Client) -> None:
-    plain = answer(backend)
-    same = answer(backend, recovery=PRESETS["simulation"].model_dump_json())
+    hammer = sample_path("hammer").read_bytes()
+    plain = answer(backend, hammer, method="ems")
+    same = answer(backend, hammer, recovery=PRESETS["simulation"].model_dump_json())
     assert timeless(same) == timeless(plain)
     assert len(plain["primitives"]) > 1
     alone = PRESETS["simulation"].model_copy(update={"min_points": 100_000})
-    assert len(answer(backend, recovery=alone.model_dump_json())["primitives"]) == 1
+    assert len(answer(backend, hammer, recovery=alone.model_dump_json())["primitives"]) == 1
+
+
+def test_parameters_of_ems_and_the_method_parts_contradict_each_other(backend: Client) -> None:
+    response = backend.request(
+        "POST",
+        "/grasp",
+        params={
+            "task": "pouring",
+            "method": "parts",
+            "recovery": PRESETS["simulation"].model_dump_json(),
+        },
+        content=BOTTLE,
+        headers={"Content-Type": NPZ},
+    )
+    assert response.status_code == 422
+    assert "method is parts" in response.json()["error"]["message"]
+
+
+def test_the_answer_says_how_the_object_was_cut(backend: Client) -> None:
+    for method in ("parts", "ems"):
+        assert answer(backend, method=method)["scene"]["method"] == method

@@ -62,6 +62,7 @@ def test_defaults_are_the_contracts() -> None:
         "gripper": "panda",
         "max_grasps": 10,
         "seed": 0,
+        "method": None,
         "recovery": None,
         "explain": True,
         "frame_id": "camera",
@@ -105,6 +106,8 @@ def test_a_depth_image_with_its_scale_and_other_arrays() -> None:
         ({"task": "pouring", "recovery": '{"eps": 0.02}'}, "recovery.max_switches: Field required"),
         ({"task": "pouring", "recovery": RECOVERY.replace("0.9", "1.0")}, "outlier_ratio"),
         ({"task": "pouring", "recovery": RECOVERY.replace("eps", "epsilon")}, "recovery.epsilon"),
+        ({"task": "pouring", "method": "sq"}, "method"),
+        ({"task": "pouring", "method": "parts", "recovery": RECOVERY}, "method is parts"),
     ],
 )
 def test_bad_parameters_are_named(query: dict[str, str], told: str) -> None:

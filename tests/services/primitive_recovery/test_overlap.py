@@ -5,7 +5,11 @@ import pytest
 from hypothesis import given, settings
 from hypothesis import strategies as st
 
-from services.primitive_recovery.ems.overlap import kept_after_overlap, volume_samples
+from services.primitive_recovery.ems.overlap import (
+    kept_after_overlap,
+    overlap_shares,
+    volume_samples,
+)
 from shared.superquadric import Superquadric, inside_outside, volume
 from tests.services.primitive_recovery.clouds import random_superquadric, superquadric
 
@@ -15,7 +19,7 @@ def ball(radius: float, x: float = 0.0) -> Superquadric:
 
 
 def kept(*bodies: Superquadric) -> tuple[int, ...]:
-    return kept_after_overlap(bodies, np.random.default_rng(0))
+    return kept_after_overlap(bodies)
 
 
 def test_a_part_inside_another_goes() -> None:
@@ -53,11 +57,31 @@ def test_the_largest_always_stays(seed: int, count: int) -> None:
 
 @pytest.mark.parametrize("exponents", [(0.1, 0.1), (1.0, 1.0), (2.0, 2.0), (0.1, 2.0)])
 def test_samples_fill_the_volume_evenly(
-    exponents: tuple[float, float], rng: np.random.Generator
+    exponents: tuple[float, float],
 ) -> None:
     body = superquadric(exponents, (0.02, 0.05, 0.1), (0.1, 0.2, 0.9), (0.5, 0.5, 0.5, 0.5))
-    samples = volume_samples(body, 4000, rng)
+    samples = volume_samples(body, 4000)
     assert samples.shape == (4000, 3)
     assert (inside_outside(body, samples) < 1).all()
     half = superquadric(exponents, (0.01, 0.025, 0.05), body.position, body.quaternion)
-    assert (inside_outside(half, samples) < 1).mean() == pytest.approx(1 / 8, abs=0.025)
+    assert (inside_outside(half, samples) < 1).mean() == pytest.approx(1 / 8, abs=0.005)
+
+
+@settings(max_examples=10, deadline=None)
+@given(st.integers(0, 2**32 - 1))
+def test_shares_are_those_of_many_random_points(seed: int) -> None:
+    rng = np.random.default_rng(seed)
+    body, other = (random_superquadric(rng) for _ in range(2))
+    shift = np.array(body.position) + rng.uniform(-0.5, 0.5, 3) * body.semi_axes
+    other = superquadric(other.exponents, other.semi_axes, tuple(shift), other.quaternion)
+    cube = rng.uniform(-1.0, 1.0, (60_000, 3)) * body.semi_axes
+    points = body.to_outer(cube)
+    points = points[inside_outside(body, points) < 1]
+    expected = (inside_outside(other, points) < 1).mean()
+    share = overlap_shares([body, other])
+    assert share[0, 0] == 1.0
+    assert share[0, 1] == pytest.approx(expected, abs=0.02)
+    # Both rows measure the same intersection.
+    assert share[0, 1] * volume(body) == pytest.approx(
+        share[1, 0] * volume(other), rel=0.1, abs=0.02 * min(volume(body), volume(other))
+    )

@@ -9,7 +9,6 @@ import pytest
 
 from services.primitive_recovery.ems.recovery import Fit, recover_one
 from shared.schemas.primitive import PRESETS, EmsParameters, Preset
-from shared.superquadric import radial_distance
 from tests.services.primitive_recovery.clouds import (
     Array,
     overlap,
@@ -17,9 +16,9 @@ from tests.services.primitive_recovery.clouds import (
     superquadric,
     surface_points,
 )
+from tests.services.primitive_recovery.singles import OVERLAP, SURFACE, trials
 
 SIMULATION = PRESETS["simulation"]
-NOISE = 0.0015
 
 
 def fit(points: Array, parameters: EmsParameters = SIMULATION, fit_points: int = 1000) -> Fit:
@@ -27,37 +26,11 @@ def fit(points: Array, parameters: EmsParameters = SIMULATION, fit_points: int =
 
 
 @pytest.fixture(scope="module")
-def trials() -> dict[str, Array]:
-    """Surface error in mm and overlap (24, 2) per kind of cloud, over the whole range of shapes."""
-    rng = np.random.default_rng(1)
-    found: dict[str, list[list[float]]] = {"noisy": [], "one view": [], "clutter": []}
-    for _ in range(24):
-        body = random_superquadric(rng)
-        truth = surface_points(body, 1500, rng)
-        clouds = {
-            "noisy": truth,
-            "one view": surface_points(body, 1500, rng, one_view=True),
-            "clutter": truth[:600],
-        }
-        for kind, cloud in clouds.items():
-            noisy = cloud + NOISE * rng.normal(size=cloud.shape)
-            if kind == "clutter":
-                middle = (truth.min(0) + truth.max(0)) / 2
-                outliers = rng.uniform(-0.75, 0.75, (900, 3)) * np.ptp(truth, axis=0)
-                noisy = np.vstack([noisy, middle + outliers])
-            recovered = fit(noisy).superquadric
-            reference = cloud if kind == "one view" else truth
-            error = 1e3 * np.abs(radial_distance(recovered, reference)).mean()
-            found[kind].append([float(error), overlap(body, recovered, rng)])
-    table = {kind: np.array(rows) for kind, rows in found.items()}
-    for kind, (errors, overlaps) in ((kind, rows.T) for kind, rows in table.items()):
-        print(
-            f"\n{kind}: surface error {np.median(errors):.2f} mm, "
-            f"90th percentile {np.percentile(errors, 90):.2f} mm; "
-            f"overlap {np.median(overlaps):.3f}, 10th percentile {np.percentile(overlaps, 10):.3f}",
-            end="",
-        )
-    return table
+def found() -> dict[str, Array]:
+    """Errors (24, 8) per kind of cloud, over the whole range of shapes."""
+    return trials(
+        lambda points, _: fit(points).superquadric, ("noisy", "one view", "clutter"), "ems"
+    )
 
 
 @pytest.mark.parametrize(
@@ -65,9 +38,9 @@ def trials() -> dict[str, Array]:
     [("noisy", 1.0, 7.0, 0.95), ("one view", 2.0, 7.0, 0.38), ("clutter", 1.0, 4.5, 0.94)],
 )
 def test_all_shapes_are_recovered(
-    trials: dict[str, Array], kind: str, median_mm: float, p90_mm: float, median_overlap: float
+    found: dict[str, Array], kind: str, median_mm: float, p90_mm: float, median_overlap: float
 ) -> None:
-    errors, overlaps = trials[kind].T
+    errors, overlaps = found[kind][:, [SURFACE, OVERLAP]].T
     assert np.median(errors) < median_mm
     assert np.percentile(errors, 90) < p90_mm
     assert np.median(overlaps) > median_overlap

@@ -30,10 +30,32 @@ def part(
     )
 
 
-PAN = (part(0, (0.18, 0.18, 0.06)), part(1, (0.02, 0.03, 0.2)))
-PAN_WITH_FAT_HANDLE = (part(0, (0.18, 0.18, 0.06)), part(1, (0.03, 0.054, 0.2)))
-HAMMER = (part(0, (0.035, 0.025, 0.3), "cuboid"), part(1, (0.03, 0.03, 0.1), "cuboid"))
-BOTTLE = (part(0, (0.07, 0.07, 0.2)), part(1, (0.03, 0.03, 0.03)))
-LADLE = (part(0, (0.08, 0.08, 0.05), "sphere"), part(1, (0.004, 0.02, 0.25), "cuboid"))
-TURNER = (part(0, (0.005, 0.09, 0.1), "cuboid"), part(1, (0.02, 0.02, 0.25)))
-KNIFE = (part(0, (0.002, 0.03, 0.18), "cuboid"), part(1, (0.015, 0.025, 0.11), "cuboid"))
+ALONG_X = (0.0, 0.5**0.5, 0.0, 0.5**0.5)
+"""Turns a part's own z into x."""
+
+# Parts lie as in the object: each tool in the middle, its handle beside it.
+PAN = (
+    part(0, (0.18, 0.18, 0.06)),
+    part(1, (0.02, 0.03, 0.2), position=(0.19, 0.0, 0.8), quaternion=ALONG_X),
+)
+PAN_WITH_FAT_HANDLE = (
+    part(0, (0.18, 0.18, 0.06)),
+    part(1, (0.03, 0.054, 0.2), position=(0.19, 0.0, 0.8), quaternion=ALONG_X),
+)
+HAMMER = (
+    part(0, (0.035, 0.025, 0.3), "cuboid"),
+    part(1, (0.03, 0.03, 0.1), "cuboid", position=(0.0, 0.0, 0.965), quaternion=ALONG_X),
+)
+BOTTLE = (part(0, (0.07, 0.07, 0.2)), part(1, (0.03, 0.03, 0.03), position=(0.0, 0.0, 0.915)))
+LADLE = (
+    part(0, (0.08, 0.08, 0.05), "sphere"),
+    part(1, (0.004, 0.02, 0.25), "cuboid", position=(0.165, 0.0, 0.8), quaternion=ALONG_X),
+)
+TURNER = (
+    part(0, (0.005, 0.09, 0.1), "cuboid"),
+    part(1, (0.02, 0.02, 0.25), position=(0.0, 0.0, 0.975)),
+)
+KNIFE = (
+    part(0, (0.002, 0.03, 0.18), "cuboid"),
+    part(1, (0.015, 0.025, 0.11), "cuboid", position=(0.0, 0.0, 0.945)),
+)

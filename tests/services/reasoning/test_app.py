@@ -35,7 +35,7 @@ def error_of(client: Client, method: str, path: str, body: Any = None) -> tuple[
 
 @pytest.mark.parametrize("media_type", [JSON, NPZ])
 def test_decide(client: Client, media_type: str) -> None:
-    request = DecideRequest(task="cooking", primitives=PAN)
+    request = DecideRequest(task="cooking", primitives=PAN, rule_set="thesis")
     response = client.request(
         "POST",
         "/decide",
@@ -89,7 +89,7 @@ def test_bad_input(client: Client, path: str, body: Any, status: int, code: str)
 
 
 def test_unusable_rules_keep_the_service_from_getting_ready(tmp_path: Path) -> None:
-    (tmp_path / "bad.ttl").write_text("nonsense")
+    (tmp_path / "knowledge.journal").write_text("nonsense\n")
     settings = ReasoningSettings(knowledge_dir=tmp_path)
-    with pytest.raises(Exception, match="is not Turtle"), in_process(create_app(settings)):
+    with pytest.raises(Exception, match="not a journal"), in_process(create_app(settings)):
         pass

@@ -4,8 +4,9 @@ from __future__ import annotations
 
 import pytest
 
+from services.reasoning.phrases import millimetres
 from services.reasoning.reasoner import Reasoner
-from services.reasoning.wording import apart, joined, millimetres
+from services.reasoning.wording import apart, joined
 from shared.schemas.primitive import Primitive
 from shared.schemas.task import DecideRequest, Version
 from tests.services.reasoning.objects import (
@@ -18,7 +19,7 @@ from tests.services.reasoning.objects import (
 
 
 def text(reasoner: Reasoner, task: str, version: Version, primitives: tuple[Primitive, ...]) -> str:
-    request = DecideRequest(task=task, reasoning=version, primitives=primitives)
+    request = DecideRequest(task=task, reasoning=version, primitives=primitives, rule_set="thesis")
     explanation = reasoner.decide(request).explanation
     assert explanation is not None
     return explanation.text
@@ -72,7 +73,9 @@ def test_a_close_call_is_named(reasoner: Reasoner) -> None:
 
 
 def test_facts_are_those_that_prolog_saw(reasoner: Reasoner) -> None:
-    request = DecideRequest(task="handover", reasoning="v2", primitives=BOTTLE[:1])
+    request = DecideRequest(
+        task="handover", reasoning="v2", primitives=BOTTLE[:1], rule_set="thesis"
+    )
     explanation = reasoner.decide(request).explanation
     assert explanation is not None
     assert explanation.facts == (

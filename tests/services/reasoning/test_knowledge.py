@@ -2,22 +2,18 @@
 
 from __future__ import annotations
 
-import os
 from concurrent.futures import ThreadPoolExecutor
 from pathlib import Path
 
 import pytest
-from hypothesis import given
+from hypothesis import HealthCheck, given
 from hypothesis import settings as hypothesis_settings
 from hypothesis import strategies as st
 
-from services.reasoning.ontology import SPARGE
 from services.reasoning.reasoner import Reasoner
 from services.reasoning.settings import ReasoningSettings
-from services.reasoning.task_store import TaskStore
 from shared.errors import (
     Conflict,
-    InternalError,
     InvalidInput,
     NotFound,
     StageUnavailable,
@@ -168,73 +164,33 @@ def test_a_folder_that_cannot_be_written(tmp_path: Path) -> None:
         reasoner.close()
 
 
-@pytest.mark.skipif(os.geteuid() == 0, reason="nothing is read-only for root")
-def test_a_read_only_folder(tmp_path: Path) -> None:
-    tmp_path.chmod(0o500)
-    try:
-        with pytest.raises(StageUnavailable, match="not writable"):
-            TaskStore(tmp_path).write(STIRRING)
-    finally:
-        tmp_path.chmod(0o700)
-
-
-def test_a_half_written_file_is_ignored_and_none_is_left(settings: ReasoningSettings) -> None:
-    store = TaskStore(settings.knowledge_dir)
-    store.write(STIRRING)
-    (settings.knowledge_dir / ".abc.tmp").write_text("@prefix : <htt")
-    assert store.read() == {"stirring": STIRRING}
-    store.write(STIRRING.model_copy(update={"description": "Anew."}))
-    names = {file.name for file in settings.knowledge_dir.iterdir()}
-    assert names == {"stirring.ttl", ".abc.tmp"}
-
-
-@pytest.mark.parametrize(
-    ("name", "text", "complaint"),
-    [
-        ("stirring.ttl", "no turtle", "is not Turtle"),
-        ("stirring.ttl", "", "should hold the task 'stirring' alone"),
-        (
-            "stirring.ttl",
-            f"@prefix : <{SPARGE}> . :stirring a :Task ; :avoidsAffordance :fly .",
-            "fly",
-        ),
-        (
-            "cooking.ttl",
-            f"@prefix : <{SPARGE}> . :cooking a :Task ; :avoidsAffordance :cut .",
-            "shipped",
-        ),
-    ],
+@hypothesis_settings(
+    max_examples=50,
+    deadline=None,
+    derandomize=True,
+    suppress_health_check=[HealthCheck.function_scoped_fixture],
 )
-def test_an_unusable_file_stops_the_start(
-    settings: ReasoningSettings, name: str, text: str, complaint: str
-) -> None:
-    settings.knowledge_dir.mkdir()
-    (settings.knowledge_dir / name).write_text(text)
-    with pytest.raises(InternalError, match=complaint):
-        Reasoner(settings).warm_up()
-
-
-@hypothesis_settings(max_examples=100, deadline=None, derandomize=True)
 @given(description=st.text(max_size=80))
 def test_any_description_is_kept(
-    tmp_path_factory: pytest.TempPathFactory, description: str
+    settings: ReasoningSettings, reasoner: Reasoner, description: str
 ) -> None:
-    store = TaskStore(tmp_path_factory.getbasetemp() / "descriptions")
     task = STIRRING.model_copy(update={"description": description})
-    store.write(task)
-    assert store.read()["stirring"] == task
+    added = reasoner.add_task(task)
+    again = Reasoner(settings)
+    try:
+        assert tasks(again)["stirring"] == added
+        assert added.description == description
+    finally:
+        again.close()
+        reasoner.delete_task(TaskName(name="stirring"))
 
 
 def test_with_a_thousand_tasks(reasoner: Reasoner, settings: ReasoningSettings) -> None:
-    store = TaskStore(settings.knowledge_dir)
-    store.write(STIRRING)
-    text = (settings.knowledge_dir / "stirring.ttl").read_text()
     for number in range(1000):
-        file = settings.knowledge_dir / f"stirring_{number}.ttl"
-        file.write_text(text.replace(":stirring", f":stirring_{number}"))
+        reasoner.add_task(STIRRING.model_copy(update={"name": f"stirring_{number}"}))
     again = Reasoner(settings)
     try:
-        assert len(tasks(again)) == 1008
+        assert len(tasks(again)) == 1007
         assert again.decide(request("stirring_999")).found
         assert again.decide(request("cooking")) == reasoner.decide(request("cooking"))
     finally:

@@ -64,7 +64,9 @@ few_examples = hypothesis_settings(
 def decide(
     reasoner: Reasoner, task: str, version: Version, primitives: tuple[Primitive, ...]
 ) -> DecideResponse:
-    return reasoner.decide(DecideRequest(task=task, reasoning=version, primitives=primitives))
+    return reasoner.decide(
+        DecideRequest(task=task, reasoning=version, primitives=primitives, rule_set="thesis")
+    )
 
 
 def miss_of(response: DecideResponse) -> RuleTrace:
@@ -240,7 +242,9 @@ def test_explain_false_leaves_only_the_explanation_out(reasoner: Reasoner) -> No
     for version, task in itertools.product(VERSIONS, TASKS):
         told = decide(reasoner, task, version, PAN)
         brief = reasoner.decide(
-            DecideRequest(task=task, reasoning=version, primitives=PAN, explain=False)
+            DecideRequest(
+                task=task, reasoning=version, primitives=PAN, explain=False, rule_set="thesis"
+            )
         )
         assert brief == told.model_copy(update={"explanation": None})
 

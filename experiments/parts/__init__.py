@@ -1,0 +1,1 @@
+"""Labelled views to train the cuts of the method `parts` on: `python -m experiments.parts OUT`."""

@@ -1,0 +1,1 @@
+"""How well the parts that are recovered are the object's parts."""

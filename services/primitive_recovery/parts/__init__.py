@@ -1,0 +1,1 @@
+"""Cut a partial cloud where the object's parts meet, then fit each part."""

@@ -1,0 +1,202 @@
+"""Kernels on pictures of cells."""
+
+from __future__ import annotations
+
+import numpy as np
+from numpy.typing import NDArray
+
+from shared.jit import kernel
+
+Array = NDArray[np.float64]
+Mask = NDArray[np.bool_]
+
+
+@kernel
+def distance_to_unset(mask: Mask) -> Array:
+    """Return every cell's distance (H, W) to the nearest unset one, in cells.
+
+    Nothing lies beyond the picture; where no cell is unset, all are far. Felzenszwalb and Huttenlocher: Distance
+    Transforms of Sampled Functions, 2012: exact, in time linear in the cells.
+    """
+    rows, columns = mask.shape
+    far = float(rows + columns)
+    squared = np.zeros((rows, columns))
+    for j in range(columns):
+        run = far
+        for i in range(rows):
+            run = run + 1.0 if mask[i, j] else 0.0
+            squared[i, j] = run
+        run = far
+        for i in range(rows - 1, -1, -1):
+            run = run + 1.0 if mask[i, j] else 0.0
+            least = min(run, squared[i, j])
+            squared[i, j] = least * least
+    found = np.zeros((rows, columns))
+    place = np.zeros(columns, dtype=np.int64)
+    border = np.zeros(columns + 1)
+    for i in range(rows):
+        level = squared[i]
+        count = 0  # parabolas of the lower envelope so far, less one
+        place[0], border[0], border[1] = 0, -np.inf, np.inf
+        for j in range(1, columns):
+            while True:
+                k = place[count]
+                meet = (level[j] + j * j - level[k] - k * k) / (2.0 * (j - k))
+                if meet > border[count]:
+                    break
+                count -= 1
+            count += 1
+            place[count], border[count], border[count + 1] = j, meet, np.inf
+        count = 0
+        for j in range(columns):
+            while border[count + 1] < j:
+                count += 1
+            gap = j - place[count]
+            found[i, j] = np.sqrt(gap * gap + level[place[count]])
+    return found
+
+
+@kernel
+def solidity(mask: Mask) -> float:
+    """Return the share of its convex hull that a mask covers; corners of cells count."""
+    rows, columns = mask.shape
+    left = np.empty((2 * rows, 2))
+    right = np.empty((2 * rows, 2))
+    kept = np.zeros(2, dtype=np.int64)
+    area = 0
+    for i in range(rows):
+        first, last = columns, -1
+        for j in range(columns):
+            if mask[i, j]:
+                area += 1
+                first = min(first, j)
+                last = j
+        if last < 0:
+            continue
+        for y in (i, i + 1):
+            _extend(left, kept, 0, float(y), float(first), 1.0)
+            _extend(right, kept, 1, float(y), float(last + 1), -1.0)
+    if area == 0:
+        return 1.0
+    twice = 0.0
+    for chain, count, sign in ((left, kept[0], -1.0), (right, kept[1], 1.0)):
+        for k in range(count - 1):
+            (y, x), (to_y, to_x) = chain[k], chain[k + 1]
+            twice += sign * (to_y - y) * (x + to_x)
+    return 2.0 * area / twice
+
+
+@kernel
+def _extend(
+    chain: Array, kept: NDArray[np.int64], which: int, y: float, x: float, sign: float
+) -> None:
+    """Append a corner to one side of the hull, dropping those that it makes concave."""
+    count = kept[which]
+    if count and chain[count - 1, 0] == y:
+        if sign * (x - chain[count - 1, 1]) >= 0:
+            return
+        count -= 1
+    while count > 1:
+        ay, ax = chain[count - 2]
+        by, bx = chain[count - 1]
+        turn = (by - ay) * (x - ax) - (bx - ax) * (y - ay)
+        if sign * turn > 0:
+            break
+        count -= 1
+    chain[count, 0], chain[count, 1] = y, x
+    kept[which] = count + 1
+
+
+@kernel
+def branch_sums(
+    branch: Mask, rest: Mask, holes: NDArray[np.int32], count: int, near: Array, tall: Array
+) -> tuple[Array, NDArray[np.bool_]]:
+    """Return sums over a branch's cells, over the rest's and over their border.
+
+    Parameters
+    ----------
+    branch, rest : (H, W) bool array
+        Cells; both are empty along the picture's border.
+    holes : (H, W) int32 array
+        Number of the hole that a cell belongs to, from 1; 0 for none.
+    count : int
+        How many there are.
+    near, tall : (H, W) array
+        Nearness and height of the cells.
+
+    Returns
+    -------
+    sums : (3, 12) array
+        Rows: branch, rest, border cells of the branch. Columns: cells, rows,
+        columns, rows^2, rows columns, columns^2, nearness, least and greatest
+        nearness, height, least and greatest height. Where the border has cells
+        of the rest, their mean nearness is in the last row's column 7.
+    touched : (count + 1,) bool array
+        Holes that the branch has a border with.
+    """
+    rows, columns = branch.shape
+    sums = np.zeros((3, 12))
+    sums[:, 7] = sums[:, 10] = np.inf
+    sums[:, 8] = sums[:, 11] = -np.inf
+    touched = np.zeros(count + 1, dtype=np.bool_)
+    facing, facing_near = 0, 0.0
+    for i in range(1, rows - 1):
+        for j in range(1, columns - 1):
+            if not (branch[i, j] or rest[i, j]):
+                continue
+            here = branch[i, j]
+            border = False
+            for y in range(i - 1, i + 2):
+                for x in range(j - 1, j + 2):
+                    if here and rest[y, x]:
+                        border = True
+                    if not here and branch[y, x]:
+                        border = True
+                    if here and holes[y, x] > 0:
+                        touched[holes[y, x]] = True
+            _add(sums, 0 if here else 1, i, j, near[i, j], tall[i, j])
+            if border and here:
+                _add(sums, 2, i, j, near[i, j], tall[i, j])
+            elif border:
+                facing += 1
+                facing_near += near[i, j]
+    sums[2, 7] = facing_near / facing if facing else 0.0
+    return sums, touched
+
+
+@kernel
+def _add(sums: Array, row: int, i: int, j: int, near: float, tall: float) -> None:
+    sums[row, 0] += 1
+    sums[row, 1] += i
+    sums[row, 2] += j
+    sums[row, 3] += i * i
+    sums[row, 4] += i * j
+    sums[row, 5] += j * j
+    sums[row, 6] += near
+    sums[row, 7] = min(sums[row, 7], near)
+    sums[row, 8] = max(sums[row, 8], near)
+    sums[row, 9] += tall
+    sums[row, 10] = min(sums[row, 10], tall)
+    sums[row, 11] = max(sums[row, 11], tall)
+
+
+@kernel
+def grown(mask: Mask, times: int) -> Mask:
+    """Return the mask with its neighbours, straight and diagonal, added `times` times."""
+    rows, columns = mask.shape
+    held = mask
+    for _ in range(times):
+        along = held.copy()
+        for i in range(rows):
+            for j in range(columns):
+                if held[i, j]:
+                    along[i, max(j - 1, 0)] = True
+                    along[i, min(j + 1, columns - 1)] = True
+        both = along.copy()
+        for i in range(rows):
+            for j in range(columns):
+                if along[i, j]:
+                    both[max(i - 1, 0), j] = True
+                    both[min(i + 1, rows - 1), j] = True
+        held = both
+    return held

@@ -1,0 +1,64 @@
+"""Holes through a part: topology of the silhouette."""
+
+from __future__ import annotations
+
+import numpy as np
+from numpy.typing import NDArray
+from scipy import ndimage
+
+from services.primitive_recovery.parts.grid import distance_to_unset, grown
+from services.primitive_recovery.parts.silhouette import Silhouette
+
+Array = NDArray[np.float64]
+
+LEAST_SHARE = 0.02
+"""Of the part's outline that an opening must have."""
+LEAST_RADIUS = 2.0
+"""Cells: narrower gaps are lost pixels."""
+
+
+def count_holes(picture: Silhouette, labels: NDArray[np.int16]) -> tuple[int, ...]:
+    """Return for every part how many openings the sensor saw the background through.
+
+    An opening is enclosed by the part alone; what two parts enclose together
+    (a mug's body and its handle) belongs to the one that goes round most of it.
+
+    Parameters
+    ----------
+    picture : Silhouette
+        Of the whole object.
+    labels : (N,) int16 array
+        Part of every point, from 0.
+    """
+    count = int(labels.max()) + 1
+    holes = [0] * count
+    mask = picture.closed
+    gaps = holes_of(mask)
+    number = int(gaps.max())
+    if number == 0:
+        return tuple(holes)
+    part = np.full(mask.shape, -1, dtype=np.int16)
+    part[picture.row, picture.column] = labels
+    radius = distance_to_unset(gaps > 0)
+    for index in range(1, number + 1):
+        gap = gaps == index
+        around = part[grown(gap, 2) & ~gap]
+        votes = np.bincount(around[around >= 0], minlength=count)
+        owner = int(votes.argmax())
+        outline = float((part == owner).sum() + gap.sum())
+        if radius[gap].max() >= LEAST_RADIUS and gap.sum() >= LEAST_SHARE * outline:
+            holes[owner] += 1
+    return tuple(holes)
+
+
+def holes_of(mask: NDArray[np.bool_]) -> NDArray[np.int32]:
+    """Return the number of the hole (H, W) that each cell belongs to, from 1; 0 for none.
+
+    A hole is background that no path to the picture's border leaves; cells that
+    touch at a corner alone are apart, as those of the mask hang together there.
+    """
+    found, _ = ndimage.label(~mask)
+    outside = np.unique(np.concatenate([found[0], found[-1], found[:, 0], found[:, -1]]))
+    found[np.isin(found, outside)] = 0
+    numbers, inverse = np.unique(found, return_inverse=True)
+    return np.asarray(inverse.reshape(found.shape), dtype=np.int32)

@@ -1,0 +1,199 @@
+"""An object in slices across one of its axes: widths, heights and relief along it."""
+
+from __future__ import annotations
+
+from dataclasses import dataclass
+
+import numpy as np
+from numpy.typing import NDArray
+
+from shared.geometry.rotation import any_perpendicular, unit
+from shared.jit import kernel
+
+Array = NDArray[np.float64]
+Indices = NDArray[np.intp]
+
+SLICES = 64
+"""Of every profile; a cut can lie between any two."""
+
+_FEWEST_SLICES = 8
+_TRIMS = np.array([0.02, 0.05, 0.05])
+"""Share of a slice's points beyond each edge, height and depth: strays of the sensor."""
+
+_ENDS = 0.001
+"""Share of all points beyond each end of the axis."""
+
+
+@dataclass(frozen=True)
+class Profile:
+    """Slices along an axis, of equal thickness; lengths in metres.
+
+    Attributes
+    ----------
+    axis : (3,) array
+        Unit vector.
+    place : (N,) array
+        Of every point along the axis: 0 at its lower end, SLICES at its upper.
+    step : float
+        Thickness of a slice.
+    width, middle : (SLICES,) array
+        Distance between the two silhouette edges, seen across axis and ray, and
+        where the middle between them lies. The width is not biased by the
+        unseen back, since both edges are seen.
+    filled : (SLICES,) array
+        Share of the width where the object was seen, not background.
+    top, bottom : (SLICES,) array
+        Heights above the support, or along the ray where there is none.
+    relief, depth : (SLICES,) array
+        How far the slice's surface reaches towards the sensor, and its mean there.
+    """
+
+    axis: Array
+    place: Array
+    step: float
+    width: Array
+    middle: Array
+    filled: Array
+    top: Array
+    bottom: Array
+    relief: Array
+    depth: Array
+
+    @property
+    def length(self) -> float:
+        return SLICES * self.step
+
+    @property
+    def size(self) -> float:
+        """Side of the square of the silhouette's area: what lengths are measured by."""
+        return float(np.sqrt(max(self.width.sum() * self.step, 1e-300)))
+
+
+def profile(points: Array, axis: Array, ray: Array, height: Array, spacing: float) -> Profile:
+    """Return the profile of points (N, 3) along a unit axis (3,), seen along a unit ray (3,).
+
+    Parameters
+    ----------
+    points : (N, 3) array
+        Metres, about their mean.
+    axis, ray : (3,) array
+        Unit vectors.
+    height : (N,) array
+        Of each point above its support, metres.
+    spacing : float
+        About how far neighbouring points are apart, metres.
+    """
+    across = np.cross(axis, ray)
+    across = any_perpendicular(axis) if np.linalg.norm(across) < 1e-3 else unit(across)
+    towards = np.cross(axis, across)
+    towards = -towards if towards @ ray > 0 else towards
+    along = points @ axis
+    low, high = np.quantile(along, [_ENDS, 1 - _ENDS])
+    length = max(float(high - low), 1e-12)
+    count = int(np.clip(length / (1.5 * spacing), _FEWEST_SLICES, SLICES))
+    place = np.clip((along - low) / length, 0.0, 1.0)
+    index = np.minimum((place * count).astype(np.intp), count - 1)
+
+    side, near = points @ across, points @ towards
+    values = np.stack([side, height, near])
+    number, ranges, depth = slice_ranges(values, index, count, _TRIMS)
+    (left, right), (bottom, top), (far, close) = ranges
+    filled = filled_share(side, index, left, right, 1.5 * spacing)
+
+    known = np.flatnonzero(number > 0)
+    centres = (known + 0.5) * (SLICES / count)
+    wanted = np.arange(SLICES) + 0.5
+
+    def spread(values: Array) -> Array:
+        return np.interp(wanted, centres, values[known])
+
+    return Profile(
+        axis=axis,
+        place=place * SLICES,
+        step=length / SLICES,
+        width=np.maximum(spread(right - left), 0.5 * spacing),
+        middle=spread((left + right) / 2),
+        filled=spread(filled),
+        top=spread(top),
+        bottom=spread(bottom),
+        relief=spread(close - far),
+        depth=spread(depth),
+    )
+
+
+@kernel
+def slice_ranges(
+    values: Array, index: Indices, count: int, trims: Array
+) -> tuple[Indices, Array, Array]:
+    """Return how many points every slice has, the range of each value there, and the last's mean.
+
+    Parameters
+    ----------
+    values : (V, N) array
+        Of every point.
+    index : (N,) array
+        Slice of every point.
+    count : int
+        How many slices there are.
+    trims : (V,) array
+        Share of a slice's points left out at either end of a value's range.
+
+    Returns
+    -------
+    number : (count,) array
+    ranges : (V, 2, count) array
+        Lowest and highest value; 0 in slices without points.
+    mean : (count,) array
+    """
+    number = np.zeros(count, dtype=np.int64)
+    for each in index:
+        number[each] += 1
+    start = np.zeros(count + 1, dtype=np.int64)
+    for each in range(count):
+        start[each + 1] = start[each] + number[each]
+    ranges = np.zeros((len(values), 2, count))
+    mean = np.zeros(count)
+    held = np.empty(len(index))
+    for v in range(len(values)):
+        end = start[:-1].copy()
+        for k in range(len(index)):
+            held[end[index[k]]] = values[v, k]
+            end[index[k]] += 1
+        for each in range(count):
+            n = number[each]
+            if n == 0:
+                continue
+            own = np.sort(held[start[each] : start[each + 1]])
+            skip = int(trims[v] * n)
+            ranges[v, 0, each], ranges[v, 1, each] = own[skip], own[n - 1 - skip]
+            if v == len(values) - 1:
+                mean[each] = own.mean()
+    return number, ranges, mean
+
+
+@kernel
+def filled_share(side: Array, index: Indices, left: Array, right: Array, cell: float) -> Array:
+    """Return what share of the cells between a slice's edges (count,) holds a point.
+
+    Parameters
+    ----------
+    side : (N,) array
+        Where each point lies across the slice, metres.
+    index : (N,) array
+        Its slice.
+    left, right : (count,) array
+        Edges of the slices, metres.
+    cell : float
+        Size of the cells, metres.
+    """
+    columns = np.maximum(((right - left) / cell).astype(np.int64) + 1, 1)
+    seen = np.zeros((len(left), columns.max()), dtype=np.bool_)
+    for k in range(len(side)):
+        each = index[k]
+        if side[k] <= right[each]:
+            column = int(max(side[k] - left[each], 0.0) / cell)
+            seen[each, min(column, columns[each] - 1)] = True
+    found = np.zeros(len(left))
+    for each in range(len(left)):
+        found[each] = seen[each].sum() / columns[each]
+    return found

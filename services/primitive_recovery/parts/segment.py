@@ -1,0 +1,142 @@
+"""Points of an object in, the part of every point out."""
+
+from __future__ import annotations
+
+from dataclasses import dataclass
+
+import numpy as np
+from numpy.typing import NDArray
+
+from services.primitive_recovery.parts.branches import branches
+from services.primitive_recovery.parts.borders import PartJoint, joints_of
+from services.primitive_recovery.parts.openings import count_holes
+from services.primitive_recovery.parts.profile import profile
+from services.primitive_recovery.parts.scorer import MODELS, Scorer
+from services.primitive_recovery.parts.slice_features import CUTS, slice_features
+from services.primitive_recovery.parts.view import PartView, part_view
+from shared.schemas.scene import SupportPlane
+
+Array = NDArray[np.float64]
+Mask = NDArray[np.bool_]
+
+LEAST_QUALITY = 0.25
+"""Usefulness of a cut that is made through an object."""
+
+LEAST_QUALITY_OF_PIECE = 0.75
+"""And through a part that was cut from it: a part cut in vain spoils what was right."""
+
+MOST_PARTS = 6
+
+LEAST_POINTS = 60
+"""Fewer show no shape to cut."""
+
+
+@dataclass(frozen=True)
+class Segmentation:
+    """The parts of an object, largest first.
+
+    Attributes
+    ----------
+    labels : (N,) int16 array
+        Part of every point.
+    holes : tuple of int
+        Openings through each part that background was seen through.
+    joints : tuple of PartJoint
+        Which parts meet, and where.
+    quality : tuple of float
+        What the scorer thought of each cut, in the order they were made.
+    """
+
+    labels: NDArray[np.int16]
+    holes: tuple[int, ...]
+    joints: tuple[PartJoint, ...]
+    quality: tuple[float, ...]
+
+
+@dataclass(frozen=True)
+class Cutter:
+    """Finds where to cut an object in two.
+
+    Attributes
+    ----------
+    slices, branches : Scorer
+        Of cuts across an axis, and of what sticks out of a body.
+    """
+
+    slices: Scorer
+    branches: Scorer
+
+    @classmethod
+    def load(cls) -> Cutter:
+        """Return the trained one."""
+        return cls(
+            Scorer.load(MODELS / "parts_slices.npz"), Scorer.load(MODELS / "parts_branches.npz")
+        )
+
+    def best_cut(self, view: PartView) -> tuple[Mask, float]:
+        """Return the points (N,) on one side of the best cut, and its quality."""
+        side, best = np.zeros(len(view.points), dtype=bool), -np.inf
+        for axis in view.axes[:2]:
+            slices = profile(view.centred, axis, view.ray, view.height, view.spacing)
+            quality = self.slices(np.vstack(slice_features(slices, view)))
+            quality = quality.reshape(2, -1).mean(axis=0)
+            k = int(quality.argmax())
+            if quality[k] > best:
+                side, best = slices.place >= CUTS[k], float(quality[k])
+        found = branches(view)
+        if found:
+            quality = self.branches(np.array([each.features for each in found]))
+            k = int(quality.argmax())
+            if quality[k] > best:
+                side = np.asarray(view.picture.at_points(found[k].cells), dtype=bool)
+                best = float(quality[k])
+        return side, best
+
+
+def segment(
+    points: Array, viewpoint: Array, plane: SupportPlane | None, cutter: Cutter
+) -> Segmentation:
+    """Return the parts of an object.
+
+    Parameters
+    ----------
+    points : (N, 3) array
+        The object's visible points in metres, in any order.
+    viewpoint : (3,) array
+        Where the sensor was.
+    plane : SupportPlane, optional
+        What the object stands on.
+    cutter : Cutter
+        The trained scorers.
+    """
+    view = part_view(points, viewpoint, plane)
+    labels = np.zeros(len(points), dtype=np.int16)
+    quality: list[float] = []
+    waiting = [(np.arange(len(points)), view)]
+    while waiting and len(quality) + 1 < MOST_PARTS:
+        rows, piece = waiting.pop(0)
+        if len(rows) < LEAST_POINTS:
+            continue
+        side, best = cutter.best_cut(piece)
+        least = LEAST_QUALITY_OF_PIECE if piece.is_piece else LEAST_QUALITY
+        if best < least or side.all() or not side.any():
+            continue
+        quality.append(best)
+        labels[rows[side]] = len(quality)
+        for kept in (rows[~side], rows[side]):
+            if len(kept) >= LEAST_POINTS:
+                waiting.append((kept, part_view(points[kept], viewpoint, plane, is_piece=True)))
+    labels = _largest_first(labels)
+    return Segmentation(
+        labels=labels,
+        holes=count_holes(view.picture, labels),
+        joints=joints_of(points, view.picture, labels),
+        quality=tuple(quality),
+    )
+
+
+def _largest_first(labels: NDArray[np.int16]) -> NDArray[np.int16]:
+    order = np.argsort(-np.bincount(labels), kind="stable")
+    rank = np.empty(len(order), dtype=np.int16)
+    rank[order] = np.arange(len(order), dtype=np.int16)
+    return rank[labels]

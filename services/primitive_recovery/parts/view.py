@@ -1,0 +1,110 @@
+"""What the cuts of an object are judged by, gathered once."""
+
+from __future__ import annotations
+
+from dataclasses import dataclass
+
+import numpy as np
+from numpy.typing import NDArray
+
+from services.primitive_recovery.parts.silhouette import (
+    Silhouette,
+    project,
+    silhouette,
+    spacing,
+)
+from shared.geometry.rotation import unit
+from shared.schemas.scene import SupportPlane
+
+Array = NDArray[np.float64]
+
+
+@dataclass(frozen=True)
+class PartView:
+    """Points of an object, or of a piece of it, as the sensor saw them.
+
+    Attributes
+    ----------
+    points : (N, 3) array
+        Metres.
+    viewpoint : (3,) array
+        Where the sensor was.
+    centred : (N, 3) array
+        The points about their mean.
+    ray : (3,) array
+        Unit vector from the sensor to that mean.
+    axes : (3, 3) array
+        Rows: principal axes, longest first.
+    height : (N,) array
+        Above the support plane; towards the sensor where there is none. Metres.
+    up : (3,) array or None
+        Unit normal of the support plane.
+    picture : Silhouette
+        Of the points.
+    spacing : float
+        About how far neighbouring points are apart, metres.
+    is_piece : bool
+        Whether this is a part already, cut from a larger object. Of what stands on a
+        table most has more than one part; of what was cut from it little has.
+    """
+
+    points: Array
+    viewpoint: Array
+    centred: Array
+    ray: Array
+    axes: Array
+    height: Array
+    up: Array | None
+    picture: Silhouette
+    spacing: float
+    is_piece: bool
+
+    @property
+    def nearness(self) -> Array:
+        """Return how far towards the sensor each point (N,) lies, metres."""
+        return -(self.centred @ self.ray)
+
+
+def part_view(
+    points: Array, viewpoint: Array, plane: SupportPlane | None, *, is_piece: bool = False
+) -> PartView:
+    """Return the view of points (N, 3) from a viewpoint (3,), above a plane if there is one."""
+    middle = points.mean(axis=0)
+    centred = points - middle
+    axes = principal_axes(centred)
+    ahead = middle - viewpoint
+    reach = float(np.linalg.norm(centred, axis=1).max())
+    amid = float(np.linalg.norm(ahead)) <= reach
+    ray = axes[2] if amid else unit(ahead)
+    flat, metres = project(centred, None if amid else viewpoint - middle, ray, axes[0])
+    apart = spacing(flat)
+    up = None
+    if plane is None:
+        height = -(centred @ ray)
+        height = height - height.min()
+    else:
+        up = unit(plane.normal)
+        height = points @ up + plane.offset
+    return PartView(
+        points=points,
+        viewpoint=viewpoint,
+        centred=centred,
+        ray=ray,
+        axes=axes,
+        height=height,
+        up=up,
+        picture=silhouette(flat, apart, metres),
+        spacing=apart * metres,
+        is_piece=is_piece,
+    )
+
+
+def principal_axes(centred: Array) -> Array:
+    """Return the principal axes (3, 3) of points (N, 3) about their mean as rows, longest first.
+
+    Each points to where the points reach farther, by the third moment, so that
+    the axes move with the points.
+    """
+    axes = np.linalg.eigh(centred.T @ centred)[1][:, ::-1].T
+    skew = ((centred @ axes.T) ** 3).sum(axis=0)
+    return np.asarray(np.where(skew < 0, -1.0, 1.0)[:, None] * axes)

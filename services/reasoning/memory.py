@@ -1,0 +1,153 @@
+"""What was learned, held in step with the disk, with other processes and with Prolog."""
+
+from __future__ import annotations
+
+import itertools
+import threading
+
+from services.reasoning.admission import Admission
+from services.reasoning.change import Change, Learned
+from services.reasoning.journal import Journal
+from services.reasoning.ontology import triples_of
+from services.reasoning.prolog import Prolog
+from services.reasoning.rule_terms import rule_for_prolog
+from services.reasoning.settings import ReasoningSettings
+from shared.errors import InternalError, JsonObject, SpargeError
+
+_numbers = itertools.count()
+_REWRITE_AFTER = 1000
+"""The journal is written anew when it has so many records, and four times the things known."""
+
+
+class Memory:
+    """What was learned; one object per process and knowledge folder.
+
+    Prolog is told of a change when it happens, not with every request, and only
+    of what changed. Other processes that share the folder see a change with
+    their next request, and this one theirs.
+
+    Parameters
+    ----------
+    settings : ReasoningSettings
+        Where it is kept.
+    prolog : Prolog
+    admission : Admission
+
+    Attributes
+    ----------
+    name : str
+        Of the knowledge base in Prolog.
+    lock : threading.RLock
+        Held by whoever reads or changes `learned`.
+    learned : Learned
+        After `refresh`.
+    version : int
+        Another one after every change.
+
+    Raises
+    ------
+    InternalError
+        What was stored is damaged, or does not fit the shipped knowledge.
+    """
+
+    def __init__(self, settings: ReasoningSettings, prolog: Prolog, admission: Admission) -> None:
+        self.name = f"knowledge_{next(_numbers)}"
+        self.lock = threading.RLock()
+        self.learned = Learned()
+        self.version = 0
+        self._prolog = prolog
+        self._admission = admission
+        self._journal = Journal(settings.knowledge_dir)
+        self._tell_everything()
+        self.refresh()
+
+    def close(self) -> None:
+        """Let Prolog forget it."""
+        with self.lock:
+            self._journal.close()
+            self._tell(Change(clear=True))
+
+    def refresh(self) -> bool:
+        """Take over what other processes changed; costs one `stat` when there is nothing.
+
+        Returns
+        -------
+        bool
+            There was something.
+
+        Raises
+        ------
+        InternalError
+            The stored knowledge is damaged.
+        """
+        with self.lock:
+            news = self._journal.news()
+            for change in news:
+                self.learned.apply(change)
+            if any(change.clear for change in news):
+                self._check_stored()
+                self._tell_everything()
+            else:
+                for change in news:
+                    self._tell(change)
+            return bool(news)
+
+    def change(self, wanted: Change) -> Change:
+        """Admit, store and tell a change; return it as it was admitted.
+
+        Raises
+        ------
+        Conflict, InvalidInput, NotFound
+            It does not fit what is known; nothing of it is taken.
+        StageUnavailable
+            It cannot be stored.
+        TooBusy
+            Another process is writing for seconds.
+        """
+        with self.lock:
+            self.refresh()
+            admitted = self._admission.admit(wanted, self.learned)
+            with self._journal.writing():
+                if self.refresh():
+                    admitted = self._admission.admit(wanted, self.learned)
+                if self._journal.needs_rewrite():
+                    self._journal.rewrite(self.learned.snapshot())
+                self._journal.append(admitted)
+                self.learned.apply(admitted)
+                if self._journal.records > max(_REWRITE_AFTER, 4 * len(self.learned)):
+                    self._journal.rewrite(self.learned.snapshot())
+            if admitted.clear:
+                self._tell_everything()
+            else:
+                self._tell(admitted)
+            return admitted
+
+    def clauses(self, *names: str) -> JsonObject:
+        """Return learned rules as Prolog text, by name; all of them when none is named."""
+        with self.lock:
+            return self._prolog.ask("clauses", knowledge=self.name, names=names)
+
+    def _check_stored(self) -> None:
+        """Check what was stored before; it may not fit what is shipped today."""
+        try:
+            self._admission.admit(self.learned.snapshot(), Learned())
+        except SpargeError as error:
+            raise InternalError(f"the stored knowledge is not usable: {error.message}") from error
+
+    def _tell_everything(self) -> None:
+        stored = self.learned.snapshot()
+        shipped = self._admission.shipped.tasks.values()
+        self._tell(stored.model_copy(update={"tasks": (*shipped, *stored.tasks)}))
+
+    def _tell(self, change: Change) -> None:
+        """Let Prolog know a change."""
+        self.version += 1
+        self._prolog.ask(
+            "change",
+            knowledge=self.name,
+            clear=change.clear,
+            subjects=change.forget_tasks,
+            names=change.forget_rules,
+            triples=triples_of(change.tasks),
+            rules=[rule_for_prolog(rule) for rule in change.rules],
+        )

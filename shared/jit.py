@@ -1,0 +1,41 @@
+"""Compile numeric kernels with numba, cached on disk where a disk can be written.
+
+Only services whose group in pyproject.toml names numba may import this.
+"""
+
+from __future__ import annotations
+
+from collections.abc import Callable
+from typing import TypeVar
+
+import numba
+import numpy as np
+from numpy.typing import NDArray
+
+Function = TypeVar("Function", bound=Callable[..., object])
+Array = NDArray[np.float64]
+
+
+def kernel(function: Function) -> Function:
+    """Mark a function on plain arrays for compilation at its first call.
+
+    It runs without the interpreter's lock, so requests overlap. The machine code is
+    cached beside the module, in NUMBA_CACHE_DIR, or in the user's cache folder; where
+    none of them can be written, it is compiled anew by each process. Call a kernel with
+    one combination of argument types only (a read-only array is another type than a
+    writable one): processes that start together share the cache, and numba's index of it
+    is safe against that only as long as all of them write the same entry.
+    """
+    options = {"error_model": "numpy", "nogil": True}
+    try:
+        compiled: Function = numba.njit(cache=True, **options)(function)
+    except RuntimeError:  # "no locator available": nowhere to write
+        compiled = numba.njit(**options)(function)
+    return compiled
+
+
+def read_only(array: NDArray[np.generic]) -> Array:
+    """Return `array` as a read-only, C-contiguous float64 array: one type for a kernel."""
+    held = np.ascontiguousarray(array, dtype=np.float64).view()
+    held.flags.writeable = False
+    return held

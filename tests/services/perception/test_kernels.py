@@ -1,0 +1,245 @@
+"""The compiled loops, each against what NumPy, SciPy or Open3D make of the same arrays."""
+
+from __future__ import annotations
+
+import subprocess
+import sys
+
+import numpy as np
+import open3d as o3d
+import pytest
+from numpy.typing import NDArray
+from scipy import ndimage
+
+from services.perception.cloud import cluster, thin
+from services.perception.interpolation import interpolate
+from services.perception.moments import biweight_moments, moments_near
+from services.perception.pixels import (
+    distances,
+    heights_above,
+    points_of_depth,
+    points_within,
+)
+from services.perception.ransac import count_votes
+from services.perception.relief_map import (
+    close_to,
+    far_above,
+    gather_heights,
+    grow,
+    highest_around,
+    points_over,
+    window_means,
+)
+from services.perception.voxels import bounds, voxel_means
+from shared.geometry.points import points_from_depth
+from shared.geometry.rotation import unit
+from shared.jit import read_only
+from shared.settings import PROJECT_ROOT
+
+Array = NDArray[np.float64]
+
+EIGHT = np.ones((3, 3), dtype=bool)
+
+
+def test_points_of_depth(rng: np.random.Generator) -> None:
+    depth = rng.integers(0, 8000, (24, 31)).astype(np.float64)
+    depth[rng.random(depth.shape) < 0.2] = 0
+    depth[0, :4] = [np.nan, np.inf, -5.0, 65535.0]
+    intrinsics = np.array([[500.0, 3.0, 15.2], [0, 510.0, 11.7], [0, 0, 1]])
+    points, rows = points_of_depth(read_only(depth), read_only(intrinsics), 1e-4, 65535.0)
+    depth[0, :4] = 0
+    expected = points_from_depth(depth, intrinsics, 1e-4)
+    seen = np.flatnonzero(np.isfinite(expected[:, 2]))
+    np.testing.assert_array_equal(rows, seen)
+    np.testing.assert_allclose(points, expected[seen], rtol=1e-12)
+
+
+def test_points_within(rng: np.random.Generator) -> None:
+    points = rng.normal(0, 2, (50, 3))
+    points[3, 1], points[7, 2], points[9, 0] = np.nan, np.inf, -np.inf
+    for limit in (1.5, np.inf):
+        kept, rows = points_within(read_only(points), limit)
+        expected = np.flatnonzero((np.abs(points) < limit).all(axis=1))
+        np.testing.assert_array_equal(rows, expected)
+        np.testing.assert_array_equal(kept, points[expected])
+
+
+def test_distances_and_heights(rng: np.random.Generator) -> None:
+    points, origin = rng.normal(0, 1, (40, 3)), rng.normal(0, 1, 3)
+    normal = unit(rng.normal(0, 1, 3))
+    np.testing.assert_allclose(
+        distances(points, origin), np.linalg.norm(points - origin, axis=1), rtol=1e-12
+    )
+    np.testing.assert_allclose(
+        heights_above(points, normal, 0.3), points @ normal + 0.3, rtol=0, atol=1e-14
+    )
+
+
+@pytest.mark.parametrize("knots", [[1.0], [0.4, 1.0], [0.4, 0.7, 0.7, 1.1, 2.0]])
+def test_interpolation(knots: list[float], rng: np.random.Generator) -> None:
+    values = rng.uniform(1, 2, len(knots))
+    at = np.concatenate([rng.uniform(0, 3, 200), np.sort(rng.uniform(0, 3, 50)), knots])
+    np.testing.assert_allclose(
+        interpolate(at, np.array(knots), values), np.interp(at, knots, values), rtol=1e-12
+    )
+
+
+def test_moments(rng: np.random.Generator) -> None:
+    points = rng.normal(0, 0.1, (300, 3)) + 1.0
+    origin, normal, offset = points[0], unit([1.0, 2.0, -1.0]), 0.02
+    centred = points - origin
+    heights = np.abs(centred @ normal + offset)
+    near = centred[heights < 0.05]
+    count, mean, scatter = moments_near(points, origin, normal, offset, 0.05)
+    assert count == len(near)
+    np.testing.assert_allclose(mean, near.mean(axis=0), atol=1e-14)
+    np.testing.assert_allclose(scatter, np.cov(near.T, bias=True), atol=1e-14)
+    weights = np.clip(1 - (heights / 0.08) ** 2, 0, None) ** 2
+    total, mean, scatter = biweight_moments(points, origin, normal, offset, 0.08)
+    assert total == pytest.approx(weights.sum())
+    np.testing.assert_allclose(mean, np.average(centred, axis=0, weights=weights), atol=1e-14)
+    np.testing.assert_allclose(scatter, np.cov(centred.T, aweights=weights, bias=True), atol=1e-14)
+
+
+def test_votes(rng: np.random.Generator) -> None:
+    points, normals = rng.normal(0, 0.02, (200, 3)), unit(rng.normal(0, 1, (7, 3)))
+    offsets = rng.normal(0, 0.01, 7)
+    away = (points @ normals.T + offsets) / 0.008
+    np.testing.assert_allclose(
+        count_votes(points, normals, offsets, 0.008),
+        np.clip(1 - away**2, 0, None).sum(axis=0),
+        rtol=1e-10,
+    )
+
+
+@pytest.mark.parametrize("spread", [0.2, 1e-9, 1e6])
+def test_voxels(spread: float, rng: np.random.Generator) -> None:
+    points = rng.uniform(-spread, spread, (500, 3))
+    low, high = bounds(points)
+    np.testing.assert_array_equal([low, high], [points.min(axis=0), points.max(axis=0)])
+    means, voxel = voxel_means(points, 0.03)
+    assert sorted(set(voxel.tolist())) == list(range(len(means)))
+    for k in range(len(means)):
+        np.testing.assert_allclose(means[k], points[voxel == k].mean(axis=0), rtol=1e-9, atol=1e-12)
+    edge = max(0.03, (high - low).max() / 2e6)
+    cells = np.floor((points - low) / edge)
+    assert len(means) == len(np.unique(cells, axis=0))
+    np.testing.assert_array_equal(thin(points, 0.03), means)
+
+
+@pytest.mark.parametrize("min_neighbours", [1, 3, 6])
+def test_clusters_are_those_of_open3d(min_neighbours: int, rng: np.random.Generator) -> None:
+    points = rng.uniform(0, 0.25, (700, 3))
+    gap = 0.03
+    centres, voxel = voxel_means(points, gap / 2)
+    cloud = o3d.geometry.PointCloud(o3d.utility.Vector3dVector(centres))
+    expected = np.asarray(cloud.cluster_dbscan(gap, min_neighbours))
+    neighbours = (np.linalg.norm(centres[:, None] - centres, axis=2) < gap).sum(axis=1)
+    dense = neighbours >= min_neighbours
+    found = np.full(len(centres), -2)
+    found[voxel] = cluster(points, gap, min_neighbours)
+    np.testing.assert_array_equal(found < 0, expected < 0)
+    a, b = found[dense], expected[dense]  # a border point may go to either of its clusters
+    np.testing.assert_array_equal(a[:, None] == a, b[:, None] == b)
+    assert len(set(a.tolist())) > 1 or min_neighbours == 1
+
+
+def test_heights_are_gathered_where_they_stand(rng: np.random.Generator) -> None:
+    count, rows, columns, edge = 400, 9, 12, 0.01
+    points = np.column_stack(
+        [rng.uniform(-0.01, 0.09, count), rng.uniform(-0.01, 0.12, count), np.zeros(count)]
+    )
+    heights, sigmas = rng.uniform(-0.01, 0.02, count), rng.uniform(5e-4, 2e-3, count)
+    axes = np.eye(3)[:2] / edge
+    cells, sums = gather_heights(
+        points, heights, sigmas, (0.001, 0.006), axes, np.zeros(2), rows, columns
+    )
+    number, total = np.zeros((rows, columns)), np.zeros((rows, columns))
+    for i in range(count):
+        row, column = np.floor(points[i, :2] / edge).astype(int) + 1
+        inside = 1 <= row < rows - 1 and 1 <= column < columns - 1
+        if inside and heights[i] > -3 * sigmas[i] - 0.001:
+            number[row, column] += 1
+            total[row, column] += min(heights[i], max(0.006, 8 * sigmas[i]))
+            assert cells[i] == row * columns + column
+        else:
+            assert cells[i] == 0
+    np.testing.assert_array_equal(sums[:, :, 0], number)
+    np.testing.assert_allclose(sums[:, :, 1], total, atol=1e-15)
+    assert 0 < number.sum() < count
+
+
+def test_windows(rng: np.random.Generator) -> None:
+    sums = np.zeros((14, 11, 2))
+    sums[1:-1, 1:-1] = rng.uniform(0, 2, (12, 9, 2))
+    sums[2:7, 2:7] = 0.0
+    count, mean = window_means(sums)
+    expected = [ndimage.convolve(sums[:, :, k], EIGHT, mode="constant") for k in (0, 1)]
+    np.testing.assert_allclose(count[1:-1, 1:-1], expected[0][1:-1, 1:-1], atol=1e-14)
+    ratio = expected[1] / np.maximum(expected[0], 1.0)
+    np.testing.assert_allclose(mean[1:-1, 1:-1], ratio[1:-1, 1:-1], atol=1e-14)
+    assert count[0].max() == mean[:, -1].max() == 0.0
+
+
+def test_weak_patches_grow_from_sure_cells(rng: np.random.Generator) -> None:
+    weak = np.zeros((40, 50), dtype=np.bool_)
+    weak[1:-1, 1:-1] = rng.random((38, 48)) < 0.3
+    sure = weak & (rng.random(weak.shape) < 0.02)
+    patches, _ = ndimage.label(weak, EIGHT)
+    expected = np.isin(patches, np.unique(patches[sure])) & weak
+    np.testing.assert_array_equal(grow(sure, weak), expected)
+    assert sure.sum() < expected.sum() < weak.sum()
+
+
+def test_highest_around_and_points_over(rng: np.random.Generator) -> None:
+    mean, kept = rng.uniform(0.1, 1, (12, 15)), np.zeros((12, 15), dtype=np.bool_)
+    kept[1:-1, 1:-1] = rng.random((10, 13)) < 0.5
+    peaks = ndimage.maximum_filter(np.where(kept, mean, 0.0), size=3, mode="constant")
+    cells = np.flatnonzero(kept).astype(np.int32)
+    np.testing.assert_array_equal(highest_around(cells, mean, kept), peaks.ravel()[cells])
+    of_points = rng.integers(0, mean.size, 100).astype(np.int32)
+    np.testing.assert_array_equal(
+        points_over(of_points, kept), np.flatnonzero(kept.ravel()[of_points])
+    )
+
+
+def test_heights_against_their_deviations(rng: np.random.Generator) -> None:
+    heights, sigmas = rng.normal(0, 0.01, 200), rng.uniform(0, 0.004, 200)
+    reach = np.maximum(0.006, 3 * sigmas)
+    np.testing.assert_array_equal(far_above(heights, sigmas, 0.006, 3.0), heights > reach)
+    np.testing.assert_array_equal(close_to(heights, sigmas, 0.006, 3.0), np.abs(heights) < reach)
+
+
+def test_warming_up_compiles_every_kernel_and_requests_none() -> None:
+    """One combination of types each, or processes could overwrite each other's cache entries."""
+    program = """
+import importlib, pkgutil
+import services.perception as package
+from services.perception.perceive import Perception
+from tests.services.perception.scenes import small_view
+from shared.schemas.scene import PerceiveRequest
+
+modules = [importlib.import_module(f"services.perception.{m.name}")
+           for m in pkgutil.iter_modules(package.__path__)]
+kernels = {name: value for module in modules for name, value in vars(module).items()
+           if hasattr(value, "signatures")}
+stage = Perception()
+stage.warm_up()
+print(len(kernels), {len(kernel.signatures) for kernel in kernels.values()})
+shot = small_view()
+found = stage.perceive(shot.request(target=(0.0, 0.0, 0.8)))
+stage.perceive(PerceiveRequest(points=shot.cloud(), viewpoint=(0.0, 0.0, 0.01)))
+stage.perceive(PerceiveRequest(points=found.object_points, input="object"))
+print(len(kernels), {len(kernel.signatures) for kernel in kernels.values()})
+"""
+    run = subprocess.run(
+        [sys.executable, "-c", program],
+        cwd=PROJECT_ROOT,
+        check=True,
+        capture_output=True,
+        text=True,
+    )
+    before, after = run.stdout.splitlines()
+    assert before == after
+    assert before.endswith("{1}")
+    assert int(before.split()[0]) > 10
