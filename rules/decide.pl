@@ -163,7 +163,8 @@ labelled(Module, Asked, Labelled) :-
 labels(Module, Asked, Labelled, Labels) :-
     findall(ID-Affordance, member((Affordance-ID)-_, Labelled), Shown),
     findall(ID-Affordance,
-            ( holds(Module, partAffordance(ID, Affordance)), \+ memberchk(Affordance, Asked) ),
+            ( holds_for_part(Module, partAffordance(ID, Affordance)),
+              \+ memberchk(Affordance, Asked) ),
             Others),
     append(Shown, Others, All),
     sort(All, Pairs),

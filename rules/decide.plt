@@ -2,6 +2,7 @@
 :- use_module(predicates).
 :- use_module(relations).
 :- use_module(rule_sets).
+:- use_module(sketch).
 :- use_module(library(plunit)).
 
 :- begin_tests(decide, [setup(ready), cleanup(( withdraw_parts, forget(test, _) ))]).
@@ -10,6 +11,7 @@ ready :-
     module_property(rule_sets, file(File)),
     file_directory_name(File, Directory),
     load_rule_set(Directory, thesis),
+    load_rule_set(Directory, default),
     forget(test, _),
     task_with(cooking, [contain, grasp], [grasp], []),
     task_with(pouring, [contain], [grasp, wrap_grasp], []),
@@ -74,5 +76,45 @@ test(the_most_certain_comes_first, [setup(two_handles), true(Parts == [[2], [1]]
 
 two_handles :-
     object([[0.18, 0.18, 0.06]-cylinder, [0.02, 0.049, 0.2]-cylinder, [0.02, 0.03, 0.2]-cylinder]).
+
+%   The rule set `default` joins the parts that may be held.
+
+default(Version, Task, Decision) :-
+    with_knowledge(test, decision(default, Version, Task, Decision)).
+
+pan_with_a_handle_in_two_pieces :-
+    sketch([ box([0, 0, 0.03], [0.24, 0.24, 0.06], []), box([0.16, 0, 0.05], [0.08, 0.03, 0.02], []),
+             box([0.24, 0, 0.05], [0.08, 0.028, 0.02], []) ]).
+
+test(pieces_together, [setup(pan_with_a_handle_in_two_pieces), cleanup(wipe),
+                       forall(member(Version, [v1, v2])), true(First == [1, 2])]) :-
+    default(Version, cooking, D),
+    parts_of(D, [First|Singles]),
+    msort(Singles, [[1], [2]]).
+test(together_is_as_sure_as_the_least_sure,
+     [setup(pan_with_a_handle_in_two_pieces), cleanup(wipe), true(Whole =:= Least)]) :-
+    default(v1, cooking, D),
+    findall(C, ( member(R, D.regions), C = R.confidence ), [Whole|Singles]),
+    min_list(Singles, Least).
+test(the_thesis_holds_one_of_them,
+     [setup(three_parts_of_a_pan), true(Parts == [[1], [2]])]) :-
+    decided(v1, cooking, D), parts_of(D, Parts0), msort(Parts0, Parts).
+
+three_parts_of_a_pan :-
+    object([ [0.24, 0.24, 0.06]-cylinder, [0.08, 0.03, 0.02]-cylinder, [0.08, 0.028, 0.02]-cylinder ]).
+
+can :- sketch([box([0, 0, 0.055], [0.066, 0.066, 0.11], [])]).
+
+test(held_if_alone, [setup(can), cleanup(wipe), true(Parts == [[0]])]) :-
+    default(v2, handover, D), parts_of(D, Parts).
+test(alone_is_said, [setup(can), cleanup(wipe), true(Kinds == [alone])]) :-
+    default(v2, handover, D),
+    D.traces = [Relation|_],
+    findall(K, ( member(C, Relation.conditions), K = C.kind ), Kinds).
+test(not_alone, [setup(bottle_with_a_cap), cleanup(wipe), true(Parts == [[1]])]) :-
+    default(v2, handover, D), parts_of(D, Parts).
+
+bottle_with_a_cap :-
+    sketch([ box([0, 0, 0.035], [0.16, 0.07, 0.07], []), box([0.1, 0, 0.035], [0.04, 0.03, 0.03], []) ]).
 
 :- end_tests(decide).

@@ -24,7 +24,7 @@
             called_rule/3,              % +Module, ?Head, -Called
             as_written/3,               % +Goal, +Names, -Text
             rule_problem/2,             % +Module, -Problem
-            holds/2,                    % +Module, ?Head
+            holds_for_part/2,           % +Module, ?Head
             proof/3,                    % +Module, ?Head, -Trace
             attempt/3,                  % +Module, ?Head, -Trace
             nearest/2,                  % +Traces, -Nearest
@@ -289,22 +289,34 @@ rule(Module, Head, Steps, Parts, Title, Other) :-
                 *           PROVING            *
                 *******************************/
 
-%!  holds(+Module, ?Head) is nondet.
+%!  holds_for_part(+Module, ?Head) is nondet.
 %
-%   Head holds by a rule of Module, as in proof/3, but nothing is measured.
+%   Head holds for a part, its first argument, by a rule of Module, as in proof/3; but
+%   nothing is measured, and a rule gives each part once, on whatever other parts.
 
-holds(Module, Head) :-
+holds_for_part(Module, Head) :-
     rule(Module, Head, Steps, _, _, In),
-    holding(Steps, In).
+    arg(1, Head, Part),
+    (   Steps = [find(Goal)|Rest],
+        finds_part(Goal, ID),
+        ID == Part
+    ->  call(In:Goal),
+        once(holding(Rest, In))
+    ;   holding(Steps, In)
+    ).
 
 holding([], _).
 holding([Step|Steps], Module) :-
     step_holds(Step, Module),
     holding(Steps, Module).
 
+holding_rule(Module, Head) :-
+    rule(Module, Head, Steps, _, _, In),
+    holding(Steps, In).
+
 step_holds(find(Goal), Module) :- call(Module:Goal).
-step_holds(enter(Goal), Module) :- holds(Module, Goal).
-step_holds(deny(Goal, _, _), Module) :- \+ holds(Module, Goal).
+step_holds(enter(Goal), Module) :- holding_rule(Module, Goal).
+step_holds(deny(Goal, _, _), Module) :- \+ holding_rule(Module, Goal).
 step_holds(test(Goal, _, _), Module) :- call(Module:Goal).
 
 %!  proof(+Module, ?Head, -Trace) is nondet.

@@ -10,6 +10,7 @@ ready :-
     prepare_rules(thesis_version1, 'thesis/version1'),
     prepare_rules(thesis_version2, 'thesis/version2'),
     odd_rules:use_module(predicates),
+    odd_rules:use_module(quantities),
     forall(odd_rule(Rule), assertz(odd_rules:Rule)),
     prepare_rules(odd_rules, odd).
 
@@ -23,6 +24,12 @@ odd_rule(( affordTask(ID, denying) :-
                primitive_values(ID, Dim, Shape),
                \+ Shape == sphere,
                ( min_ratio(Dim, 3) -> true ; max_ratio(Dim, 1.5) ) )).
+odd_rule(( affordTask(ID, refusing) :-
+               part(ID),
+               \+ slender(ID) )).
+odd_rule(( slender(ID) :-
+               primitive_values(ID, Dim, _),
+               max_dimension(Dim, [0.05, 0.05, 1]) )).
 odd_rule(( slim(Dim, 0.2) :- max_dimension(Dim, [0.2, 0.2, 1]) )).
 odd_rule(( slim(Dim, 0.05) :- max_dimension(Dim, [0.05, 0.05, 1]) )).
 
@@ -74,6 +81,35 @@ test(helpers_backtrack, [setup(pan), all(ID == [1])]) :-
     proof(odd_rules, affordTask(ID, helping), _).
 test(negation_and_choice, [setup(pan), all(ID == [0, 1])]) :-
     proof(odd_rules, affordTask(ID, denying), _).
+%   Negation of a goal with rules: as sure as the goal is unsure.
+
+test(denial_holds, [setup(pan), all(ID == [0])]) :-
+    proof(odd_rules, affordTask(ID, refusing), _).
+test(denial_says_why, [setup(pan), true(Kind-Said-Sure == absent-slender-true)]) :-
+    proof(odd_rules, affordTask(0, refusing), Trace),
+    Trace.conditions = [C],
+    Kind = C.kind, Said = C.measured,
+    Because = C.because, Because.kind == max_dimension,
+    ( C.support > 0.9 -> Sure = true ; Sure = C.support ),
+    !.
+test(denial_fails_softly, [setup(pan), true(Holds-Sign == false-negative)]) :-
+    attempt(odd_rules, affordTask(1, refusing), Trace),
+    Trace.conditions = [C],
+    Holds = C.holds,
+    ( C.margin < 0 -> Sign = negative ; Sign = C.margin ),
+    !.
+test(denials_are_remembered_for_one_goal_only, [setup(pan), true(Then-Now == [0]-[1])]) :-
+    with_memory(findall(ID, proof(odd_rules, affordTask(ID, refusing), _), Then)),
+    object([[0.02, 0.03, 0.2]-cylinder, [0.18, 0.18, 0.06]-cylinder]),
+    with_memory(findall(ID, proof(odd_rules, affordTask(ID, refusing), _), Now)).
+test(memory_changes_nothing, [setup(set_random(seed(9))), forall(between(1, 30, _))]) :-
+    random_object,
+    findall(ID, proof(odd_rules, affordTask(ID, refusing), _), Plain),
+    with_memory(( findall(ID, proof(odd_rules, affordTask(ID, refusing), _), First),
+                  findall(ID, proof(odd_rules, affordTask(ID, refusing), _), Second) )),
+    assertion(Plain == First),
+    assertion(Plain == Second).
+
 test(a_condition_without_scale_is_tried_softly, [setup(object([[0.1, 0.1, 0.1]-sphere])), nondet]) :-
     attempt(odd_rules, affordTask(0, denying), Trace),
     failing(Trace, Failing),
@@ -121,6 +157,14 @@ test(margins_agree, [setup(set_random(seed(8))), forall(between(1, 40, _))]) :-
 
 test(unknown_predicates_are_problems, true(sub_string(Problem, _, _, _, "calls no_such/1"))) :-
     assertz(odd_rules:(affordTask(ID, broken) :- primitive_values(ID, _, _), no_such(ID))),
+    prepare_rules(odd_rules, odd),
+    once(rule_problem(odd_rules, Problem)),
+    retract(odd_rules:(affordTask(_, broken) :- _)),
+    prepare_rules(odd_rules, odd),
+    !.
+test(misspelt_quantities_are_problems,
+     true(sub_string(Problem, _, _, _, "a quantity that is not known: at_least(strech(_), 2)"))) :-
+    assertz(odd_rules:(affordTask(ID, broken) :- part(ID), at_least(strech(ID), 2))),
     prepare_rules(odd_rules, odd),
     once(rule_problem(odd_rules, Problem)),
     retract(odd_rules:(affordTask(_, broken) :- _)),

@@ -61,6 +61,21 @@ test(the_proof_holds_the_conditions_of_the_rule_that_was_asked, [setup(( taught(
 test(an_affordance, [setup(( taught(pierce), knife )), all(ID == [0, 1])]) :-
     with_knowledge(test, findall(I, proof(thesis_version2, partAffordance(I, pierce), _), IDs)),
     member(ID, IDs).
+%   Without measuring, the same parts, each once however many other parts there are.
+
+test(trying_agrees_with_proving, [setup(( taught(pierce), knife )), true(Tried == Proved)]) :-
+    with_knowledge(test, ( findall(I-A, holds_for_part(thesis_version2, partAffordance(I, A)), All),
+                           findall(I-A, proof(thesis_version2, partAffordance(I, A), _), Shown) )),
+    sort(All, Tried),
+    sort(Shown, Proved).
+test(a_part_counts_once, [setup(( taught(slicing), blades )), true(Parts == [2])]) :-
+    with_knowledge(test, ( findall(I, holds_for_part(thesis_version1, affordTask(I, slicing)), Parts),
+                           findall(T, proof(thesis_version1, affordTask(_, slicing), T), Traces) )),
+    length(Traces, 2).
+
+blades :-
+    object([[0.002, 0.03, 0.18]-cuboid, [0.002, 0.03, 0.18]-cuboid, [0.015, 0.025, 0.11]-cuboid]).
+
 test(is_a_rule, [setup(taught(slicing))]) :-
     with_knowledge(test, has_rule(thesis_version1, affordTask(_, slicing))).
 test(of_one_knowledge_base, [setup(taught(slicing)), fail]) :-

@@ -1,5 +1,6 @@
 :- use_module(measurement).
 :- use_module(predicates).
+:- use_module(sketch).
 :- use_module(library(plunit)).
 
 :- begin_tests(measurement, [setup(parts), cleanup(withdraw_parts)]).
@@ -53,5 +54,41 @@ test(one_of_several_shapes, true([S, R] == [0.7, [cuboid, cylinder]])) :-
     measured(Goal, 1, required, R).
 test(what_has_no_scale_is_other, true(Value == other)) :-
     measured(member(1, [1]), 0, kind, Value).
+
+%   Quantities (quantities.pl), on boxes 0.3 x 0.03 x 0.02 and 0.03 x 0.12 x 0.03 m.
+
+hammer :-
+    sketch([ box([0, 0, 0.02], [0.3, 0.03, 0.02], [holes(1)]), box([0.165, 0, 0.02], [0.03, 0.12, 0.03], []) ]).
+
+test(margin_of_a_quantity, [setup(hammer), cleanup(wipe), true(near(Value, 0.01))]) :-
+    measured(at_most(width(0), 0.04), 0, margin, Value).
+test(margin_is_negative_outside, [setup(hammer), cleanup(wipe), true(near(Value, -0.01))]) :-
+    measured(at_least(thickness(1), 0.04), 1, margin, Value).
+test(measured_share, [setup(hammer), cleanup(wipe), true(near(Value, 0.25))]) :-
+    measured(at_most(width(0) / across(1), 1), 0, measured, Value).
+test(share_as_data, [setup(hammer), cleanup(wipe), true(Value == [share, [width, 0], [across, 1]])]) :-
+    measured(at_most(width(0) / across(1), 1), 0, quantity, Value).
+test(exactly_at_the_bound, [setup(hammer), cleanup(wipe), true(abs(Value - 0.5) < 1.0e-6)]) :-
+    measured(at_least(width(0), 0.03), 0, support, Value).
+test(a_count_at_its_bound_is_rather_sure, [setup(hammer), cleanup(wipe), true(Value > 0.9)]) :-
+    measured(at_least(holes(0), 1), 0, support, Value).
+test(no_excess_inside, [setup(hammer), cleanup(wipe), true(Value =:= 0)]) :-
+    measured(at_most(width(0), 0.04), 0, excess, Value).
+test(excess_grows, [setup(hammer), cleanup(wipe), true(Near < Far)]) :-
+    measured(at_most(width(0), 0.025), 0, excess, Near),
+    measured(at_most(width(0), 0.01), 0, excess, Far).
+test(a_poor_fit_makes_it_less_sure, [setup(hammer), cleanup(wipe), true(Poor < Good)]) :-
+    measured(at_most(width(0), 0.04), 0, support, Good),
+    retract(quantities:residual(0, _)),
+    assertz(quantities:residual(0, 0.01)),
+    measured(at_most(width(0), 0.04), 0, support, Poor).
+test(units, [setup(hammer), cleanup(wipe), true(Units == [m, ratio, deg, count, m3])]) :-
+    findall(U, ( member(Q, [length(0), stretch(0), slant(0), holes(0), volume(0)]),
+                 measured(at_least(Q, 0.0), 0, unit, U) ),
+            Units).
+test(what_is_not_known_has_no_scale, [setup(hammer), cleanup(wipe), true(Value == other)]) :-
+    measured(at_least(width(7), 0.1), 7, kind, Value).
+test(touching, [setup(hammer), cleanup(wipe), true(Value =:= 0)]) :-
+    measured(meets(1, 0), 1, excess, Value).
 
 :- end_tests(measurement).

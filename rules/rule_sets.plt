@@ -1,5 +1,7 @@
 :- use_module(rule_sets).
+:- use_module(explain).
 :- use_module(loader).
+:- use_module(sketch).
 :- use_module(library(plunit)).
 
 here(Directory) :-
@@ -16,6 +18,22 @@ test(affordances, all(A == [contain, cut, grasp, pound, scoop, support, wrap_gra
     member(A, Affordances).
 test(module, true(Module == thesis_version2)) :-
     rule_module(thesis, v2, Module).
+
+test(both_rule_sets_know_the_same_tasks, true(Default == Thesis)) :-
+    here(Directory),
+    load_rule_set(Directory, default),
+    findall(T, ruled_task(default, T), Default0), sort(Default0, Default),
+    findall(T, ruled_task(thesis, T), Thesis0), sort(Thesis0, Thesis).
+test(files_beside_are_part_of_the_rules, true(Titles == ['default/handles:stem'])) :-
+    here(Directory),
+    load_rule_set(Directory, default),
+    sketch([ box([0, 0, 0.03], [0.24, 0.24, 0.06], []), box([0.2, 0, 0.05], [0.16, 0.03, 0.02], []) ]),
+    findall(R, ( proof(default_handles, stem(_, _), Trace), R = Trace.rule ), Titles),
+    wipe.
+test(held_together) :- held_together(default, v1, cooking).
+test(thesis_says_nothing, fail) :- held_together(thesis, v1, cooking).
+test(held_if_alone) :- held_if_alone(default, v2, handover).
+test(not_every_task, fail) :- held_if_alone(default, v2, cutting).
 
 %   A file that Prolog only complains about is refused.
 

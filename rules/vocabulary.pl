@@ -95,6 +95,7 @@ measured(share_across, ID, across(ID) / object_width, 0, 1, "share of the object
 measured(stretch, ID, stretch(ID), 0, 1000, "extent along the main axis over that across it").
 measured(slant, ID, slant(ID), 0, 90, "angle to the main axis, in degrees").
 measured(end_gap, ID, end_gap(ID), 0, 1, "distance from the nearer end, as a share of the length").
+measured(seen, ID, seen(ID), 0, 1, "share of the points of the object that belong to it").
 measured(bottom, ID, bottom(ID), -10, 10, "lowest point above the support, in metres").
 measured(top, ID, top(ID), -10, 10, "highest point above the support, in metres").
 measured(holes, ID, holes(ID), 0, 100, "openings through the part").
@@ -113,6 +114,8 @@ compared(relative_stretch, A, B, stretch(A) / stretch(B), [0, 1000],
          "stretch of the first over that of the second").
 compared(reach, A, B, reach(A, B), [-10, 10],
          "how far the first sticks out of the second, in metres").
+compared(offset, A, B, offset(A, B), [0, 1000],
+         "distance of the first along the longest axis of the second, in halves of its length").
 
 one_of(Classes, Shape, Goal) :-
     is_list(Classes),

@@ -1,5 +1,6 @@
 :- use_module(vocabulary).
 :- use_module(quantities, [known_quantity/1]).
+:- use_module(library(occurs)).
 :- use_module(library(plunit)).
 
 :- begin_tests(vocabulary).
@@ -36,6 +37,20 @@ exists(partAffordance(_, _)).
 exists(at_least(Quantity, _)) :- !, known_quantity(Quantity).
 exists(at_most(Quantity, _)) :- !, known_quantity(Quantity).
 exists(Goal) :- predicate_property(vocabulary:Goal, defined).
+
+%   Whatever can be measured on parts can be asked for.
+
+test(every_quantity_has_a_word, [forall(quantity_of_parts(Quantity)), nondet]) :-
+    word(_, _, number(_, _, _, _), _, at_least(Term, _), _),
+    sub_term(Part, Term),
+    nonvar(Part),
+    functor(Part, Quantity, _).
+
+quantity_of_parts(Quantity) :-
+    clause(quantities:quantity(General, _, _), _),
+    compound(General),
+    General \= _ / _,
+    functor(General, Quantity, _).
 
 test(number, true(Goal == min_ratio([0.1, 0.2, 0.3], 2))) :-
     built(min_ratio, 1, 2, Goal).

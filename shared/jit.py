@@ -6,7 +6,7 @@ Only services whose group in pyproject.toml names numba may import this.
 from __future__ import annotations
 
 from collections.abc import Callable
-from typing import TypeVar
+from typing import Any, TypeVar
 
 import numba
 import numpy as np
@@ -14,6 +14,8 @@ from numpy.typing import NDArray
 
 Function = TypeVar("Function", bound=Callable[..., object])
 Array = NDArray[np.float64]
+
+_kernels: list[Any] = []
 
 
 def kernel(function: Function) -> Function:
@@ -24,14 +26,28 @@ def kernel(function: Function) -> Function:
     none of them can be written, it is compiled anew by each process. Call a kernel with
     one combination of argument types only (a read-only array is another type than a
     writable one): processes that start together share the cache, and numba's index of it
-    is safe against that only as long as all of them write the same entry.
+    is safe against that only as long as all of them write the same entry. The cache
+    notices changes in the file of the function alone, so kernels that call each other
+    belong in one file. Leave NumPy's sorting (sort, argsort, median, percentile) out of
+    them: numba builds it from inner functions whose compiled names repeat from process to
+    process, and pieces cached by two processes can be linked into each other;
+    `shared.sorting` has kernels that sort.
     """
     options = {"error_model": "numpy", "nogil": True}
     try:
         compiled: Function = numba.njit(cache=True, **options)(function)
     except RuntimeError:  # "no locator available": nowhere to write
         compiled = numba.njit(**options)(function)
+    _kernels.append(compiled)
     return compiled
+
+
+def types_compiled() -> dict[str, int]:
+    """Return for how many combinations of argument types each kernel so far was compiled."""
+    return {
+        f"{each.py_func.__module__}.{each.py_func.__name__}": len(each.signatures)
+        for each in _kernels
+    }
 
 
 def read_only(array: NDArray[np.generic]) -> Array:

@@ -51,8 +51,9 @@ def _meaning(outcomes: Sequence[Taught], lesson: Lesson, took: Took) -> str:
     return (
         f"Both versions learn to hold knives and scissors by the handle while the backend runs: "
         f"Version 1 from {len(lesson.rules)} rules of conditions (POST /rules, "
-        f"{took.rules_ms:.0f} ms), Version 2 from relations to affordances that it knows "
-        f"(POST /tasks, {took.task_ms:.0f} ms). After that the best grasp is on the handle in "
+        f"{took.version_1_ms:.0f} ms), Version 2 from an affordance with its rules and relations "
+        f"to it (POST /affordances, POST /tasks, {took.version_2_ms:.0f} ms). After that the best "
+        "grasp is on the handle in "
         f"{grasped(AFTER, 'v1')} (Version 1) and {grasped(AFTER, 'v2')} (Version 2) views; the "
         f"shipped task reaches {grasped(BUILT_IN, 'v1')} and {grasped(BUILT_IN, 'v2')}. Before, "
         "and when the lesson is forgotten, neither knows the task."

@@ -104,7 +104,9 @@ def context_for(
         sparge=sparge,
         console=console,
         folder=results / experiment.name,
-        sets=tuple(each.limited(limit or experiment.views_per_object) for each in sets),
+        sets=tuple(
+            each.limited(limit or experiment.asked_views(each.is_catalogue)) for each in sets
+        ),
         limit=limit,
         seed=seed,
         workers=workers,

@@ -128,6 +128,8 @@ class Experiment:
         So many of them also with the noise of a stereo camera.
     variants : int
         Random objects of every class that it needs views of as well.
+    scan_views : int or None
+        How many views of each object of a folder of scans; None: as many as of the catalogue's.
     """
 
     name: str
@@ -138,6 +140,11 @@ class Experiment:
     views_per_object: int | None = 10
     noisy_views: int = 0
     variants: int = 0
+    scan_views: int | None = None
+
+    def asked_views(self, of_catalogue: bool) -> int | None:
+        """Return how many views of each object are asked about; None: all there are."""
+        return self.views_per_object if of_catalogue else self.scan_views or self.views_per_object
 
 
 GLOSSARY: Mapping[str, str] = MappingProxyType(

@@ -39,7 +39,7 @@ def lesson_view(thing: CatalogueObject, seed: int) -> LabelledView:
 
 
 def write_lessons(folder: Path, seed: int, first: int, last: int) -> tuple[int, int]:
-    """Write a view of every object as `folder`/<object>/<round>.npz; return how many, and left out."""
+    """Write `folder`/<object>/<round>.npz per object; return how many, and how many left out."""
     written = left_out = 0
     for thing in lessons(seed, first, last):
         path = folder / thing.name / f"{thing.name.split('-')[1]}.npz"

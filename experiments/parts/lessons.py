@@ -16,7 +16,7 @@ OTHER_REGIONS = {"bottle": {"pouring": ("body",), "handover": ("shoulder", "neck
 a bottle's shoulder is body or neck. Shown beside the catalogue's, it teaches a cut
 that both can live with."""
 
-OTHER_EVERY = 3
+OTHER_EVERY = 2
 """Rounds from one such object to the next: the catalogue's opinion counts more."""
 
 HANDLES = {"pan": "handle", "mug": "handle"}
@@ -48,7 +48,7 @@ def lessons(seed: int, first: int, last: int) -> Iterator[CatalogueObject]:
 
 
 def noise_level(rng: np.random.Generator) -> tuple[float, float]:
-    """Return a sensor's noise: standard deviation of depth at 1 m (metres), correlation (pixels)."""
+    """Return a sensor's noise: sigma of the depth at 1 m in metres, correlation in pixels."""
     if rng.random() < 0.35:
         return 0.0, 0.0
     return float(rng.uniform(0.5e-3, 2.5e-3)), float(rng.choice([0.0, 0.0, 1.5]))

@@ -8,18 +8,12 @@ from experiments.framework import Context, Experiment, Findings, Share, ShownVie
 from experiments.framework.asking import Source, each_view
 from experiments.framework.scoring import GOOD_IOU
 from experiments.framework.views import load
-from experiments.primitives.cut import METHODS, Cut, ask_parts, cut
+from experiments.primitives.class_tables import by_class, by_region, class_table
+from experiments.primitives.cut import ask_parts, cut
+from experiments.primitives.model import METHODS, Cut
 from experiments.primitives.plots import distribution, sizes, times
 from experiments.primitives.sheet import contact_sheet, worst_views
-from experiments.primitives.tables import (
-    by_class,
-    by_region,
-    class_table,
-    headline,
-    regions_of,
-    size_table,
-    time_table,
-)
+from experiments.primitives.tables import headline, regions_of, size_table, time_table
 from experiments.primitives.truth import TruePart, true_part
 from shared.errors import InvalidInput
 from shared.schemas.primitive import Method
@@ -44,6 +38,7 @@ def run(context: Context) -> Findings:
         ask_parts(context.sparge, first, method)
     cuts = each_view(both, sets, workers=1, console=context.console, describe="looking for parts")
     tables = [headline(cuts), class_table(cuts), size_table(cuts), time_table(cuts)]
+    tables = [table for table in tables if table.rows]  # sizes of scans are not known
     for each in sets:
         own = [row for row in cuts if row.source == each.name]
         name = each.name.replace(", ", "-").replace(" ", "-").replace("/", "-")
@@ -119,4 +114,5 @@ PRIMITIVES = Experiment(
     views_per_object=3,
     noisy_views=3,
     variants=4,
+    scan_views=10,
 )

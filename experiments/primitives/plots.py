@@ -7,7 +7,7 @@ from collections.abc import Sequence
 from experiments.framework import Plot
 from experiments.framework.plots import OTHER, V1, cumulative, new_figure, tidy
 from experiments.framework.scoring import GOOD_IOU
-from experiments.primitives.cut import METHODS, Cut
+from experiments.primitives.model import METHODS, Cut
 from experiments.primitives.tables import regions_of
 
 COLOURS = {"parts": OTHER, "ems": V1}

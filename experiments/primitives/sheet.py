@@ -15,7 +15,8 @@ from experiments.framework.asking import mapped
 from experiments.framework.gallery import MISSED, REST, grey, window
 from experiments.framework.plots import new_figure
 from experiments.framework.views import load
-from experiments.primitives.cut import Cut, ask_parts
+from experiments.primitives.cut import ask_parts
+from experiments.primitives.model import Cut
 from shared.schemas.primitive import Method
 
 WORST = 20

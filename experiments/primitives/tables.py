@@ -10,22 +10,22 @@ import numpy as np
 from experiments.framework import MeanStd, Share, Table
 from experiments.framework.cells import Cell
 from experiments.framework.scoring import GOOD_IOU
-from experiments.primitives.cut import METHODS, VERY_GOOD_IOU, Cut, RegionCut
+from experiments.primitives.model import METHODS, VERY_GOOD_IOU, Cut, RegionCut
 
-_SCORES = (
+SCORES = (
     f"one ≥ {GOOD_IOU}",
     f"one ≥ {VERY_GOOD_IOU}",
     f"several ≥ {GOOD_IOU}",
     f"several ≥ {VERY_GOOD_IOU}",
 )
-_SIZES = ("shortest", "middle", "longest")
-_WORDS = (
+SIZES = ("shortest", "middle", "longest")
+WORDS = (
     "Counted are labelled regions, one for each view and task. One: the single part that overlaps "
     "the region most (IoU over the object's labelled points, those that perception lost "
     "included); several: the best set of parts. Both are chosen with the label in hand: what "
     "could be had of the parts, whatever the rules choose."
 )
-_SIZE_WORDS = (
+SIZE_WORDS = (
     "Median of |log(found / true)| of the full extents of the best part, where it overlaps by "
     f"{GOOD_IOU} or more, against the edges of the smallest box around the region's parts, both "
     "sorted. Shape: against the ideal body that overlaps the part's convex hull best, where it is "
@@ -39,20 +39,20 @@ def headline(cuts: Sequence[Cut]) -> Table:
         (
             source,
             method_name(mine),
-            *_shares(regions_of(mine)),
+            *shares(regions_of(mine)),
             MeanStd.of((each.parts for each in mine), 1),
             100 * float(np.mean([each.assigned for each in mine])),
             _percentile(mine, 50),
             _percentile(mine, 95),
         )
-        for source, mine in _groups(cuts, lambda each: each.source)
+        for source, mine in grouped(cuts, lambda each: each.source)
     ]
     return Table(
         "primitives",
         "Parts against labelled regions",
-        ("views", "method", *_SCORES, "parts", "% assigned", "ms", "ms, p95"),
+        ("views", "method", *SCORES, "parts", "% assigned", "ms", "ms, p95"),
         tuple(rows),
-        f"{_WORDS} Assigned: share of the object's labelled points that are some part's, mean over "
+        f"{WORDS} Assigned: share of the object's labelled points that are some part's, mean over "
         "the views; the others were lost by perception or left over. ms: median and 95th "
         "percentile of the recovery stage as the gateway measures it, one request at a time, the "
         "methods in turns; perception is not in it. ems is asked with the published parameters of "
@@ -64,38 +64,15 @@ def size_table(cuts: Sequence[Cut]) -> Table:
     """Return one line for each set of views and method, where the true sizes are known."""
     rows = [
         (source, method_name(mine), *sizes)
-        for source, mine in _groups(cuts, lambda each: each.source)
-        if (sizes := _sizes(mine))[0]
+        for source, mine in grouped(cuts, lambda each: each.source)
+        if (sizes := size_errors(mine))[0]
     ]
     return Table(
         "sizes",
         "Size and shape of the best parts",
-        ("views", "method", "compared", *_SIZES, "shape right"),
+        ("views", "method", "compared", *SIZES, "shape right"),
         tuple(rows),
-        _SIZE_WORDS,
-    )
-
-
-def class_table(cuts: Sequence[Cut]) -> Table:
-    """Return one line for each class and method, one column for each set of views."""
-    sources = list(dict.fromkeys(each.source for each in cuts))
-    rows: list[tuple[Cell, ...]] = [
-        (
-            class_name,
-            method_name(mine),
-            *(
-                _shares(regions_of(each for each in mine if each.source == source))[0]
-                for source in sources
-            ),
-        )
-        for class_name, mine in _groups(cuts, lambda each: each.class_name or each.thing)
-    ]
-    return Table(
-        "classes",
-        f"Regions that a single part meets (IoU ≥ {GOOD_IOU}), by class",
-        ("class", "method", *sources),
-        tuple(sorted(rows, key=lambda row: str(row[0]))),
-        "Objects whose class is not known stand under their name.",
+        SIZE_WORDS,
     )
 
 
@@ -150,47 +127,6 @@ def time_table(cuts: Sequence[Cut]) -> Table:
     )
 
 
-def by_class(cuts: Sequence[Cut], name: str, source: str) -> Table:
-    """Return all figures of one set of views, one line for each class and method."""
-    rows = [
-        (
-            class_name,
-            method_name(mine),
-            *_shares(regions_of(mine)),
-            MeanStd.of((each.parts for each in mine), 1),
-            *_sizes(mine),
-        )
-        for class_name, mine in _groups(cuts, lambda each: each.class_name or each.thing)
-    ]
-    return Table(
-        name,
-        f"Parts by class: {source}",
-        ("class", "method", *_SCORES, "parts", "compared", *_SIZES, "shape right"),
-        tuple(rows),
-        f"{_WORDS} {_SIZE_WORDS}",
-        detail=True,
-    )
-
-
-def by_region(cuts: Sequence[Cut], name: str, source: str) -> Table:
-    """Return one line for each object, task and method."""
-    rows: list[tuple[Cell, ...]] = []
-    for thing, mine in _groups(cuts, lambda each: each.thing):
-        for task in dict.fromkeys(region.task for region in regions_of(mine)):
-            own = [region for region in regions_of(mine) if region.task == task]
-            rows.append(
-                (thing, task, method_name(mine), *_shares(own), median(r.single for r in own))
-            )
-    return Table(
-        name,
-        f"Parts by object and task: {source}",
-        ("object", "task", "method", *_SCORES, "IoU of one, median"),
-        tuple(rows),
-        _WORDS,
-        detail=True,
-    )
-
-
 def regions_of(cuts: Iterable[Cut]) -> list[RegionCut]:
     """Return all labelled regions."""
     return [region for each in cuts for region in each.regions]
@@ -202,7 +138,7 @@ def method_name(cuts: Sequence[Cut]) -> str:
     return cuts[0].method + (f" (answered by {', '.join(answered)})" if answered else "")
 
 
-def _groups(cuts: Sequence[Cut], key: Callable[[Cut], str]) -> list[tuple[str, list[Cut]]]:
+def grouped(cuts: Sequence[Cut], key: Callable[[Cut], str]) -> list[tuple[str, list[Cut]]]:
     """Return the cuts by key and method, in the order in which keys come."""
     groups = []
     for value in dict.fromkeys(key(each) for each in cuts):
@@ -213,7 +149,8 @@ def _groups(cuts: Sequence[Cut], key: Callable[[Cut], str]) -> list[tuple[str, l
     return groups
 
 
-def _shares(regions: Sequence[RegionCut]) -> tuple[Share, Share, Share, Share]:
+def shares(regions: Sequence[RegionCut]) -> tuple[Share, Share, Share, Share]:
+    """Return which share one part meets, well and very well, and which several parts do."""
     one, very, several, very_several = (
         Share.of(iou >= limit for iou in values)
         for values in ([r.single for r in regions], [r.union for r in regions])
@@ -222,12 +159,12 @@ def _shares(regions: Sequence[RegionCut]) -> tuple[Share, Share, Share, Share]:
     return one, very, several, very_several
 
 
-def _sizes(cuts: Sequence[Cut]) -> tuple[Cell, ...]:
+def size_errors(cuts: Sequence[Cut]) -> tuple[Cell, ...]:
     """Return how many parts are compared, the three errors of size, the share of right names."""
     regions = regions_of(cuts)
     errors = [each.extents for each in regions if each.extents is not None]
     named = [each.shape_is_right for each in regions if each.shape_is_right is not None]
-    middle = np.median(np.abs(errors), axis=0).tolist() if errors else [None] * len(_SIZES)
+    middle = np.median(np.abs(errors), axis=0).tolist() if errors else [None] * len(SIZES)
     return len(errors), *middle, Share.of(named)
 
 

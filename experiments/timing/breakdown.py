@@ -35,8 +35,8 @@ def breakdown_table(timed: Mapping[str, Sequence[Timed]]) -> Table:
         "One request at a time. Stages are measured at the gateway, so they hold the way there and "
         "back: encoding, ASGI or network, decoding. Grasp proposal is left out where no part is "
         "found. Whether task and gripper are known is asked while perception works; the rest is "
-        "what no other stage accounts for. Client: what only it sees, which is packing the view, HTTP, and writing "
-        "and unpacking the answer.",
+        "what no other stage accounts for. Client: what only it sees, which is packing the view, "
+        "HTTP, and writing and unpacking the answer.",
     )
 
 

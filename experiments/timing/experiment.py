@@ -13,17 +13,9 @@ from experiments.framework.asking import VERSIONS
 from experiments.framework.knowledge import AddedTasks, added_tasks, affordances, name_prefix
 from experiments.framework.thesis import FIGURE_6_6_TASKS
 from experiments.timing.breakdown import breakdown_table
+from experiments.timing.cases import Case, all_cases, cases_of
 from experiments.timing.limits import limits_table
-from experiments.timing.measure import (
-    Case,
-    Timed,
-    all_cases,
-    cases_of,
-    counts_of,
-    measure,
-    of_version,
-    time_listing,
-)
+from experiments.timing.measure import Timed, counts_of, measure, of_version, time_listing
 from experiments.timing.plots import growth_lines, stage_bars
 from experiments.timing.tables import growth_table, stage_table
 from shared.schemas.route import Nothing

@@ -7,16 +7,14 @@ from collections.abc import Sequence
 from dataclasses import dataclass
 from statistics import median
 
-from experiments.framework import Context, ShownView, ViewSet
+from experiments.framework import Context
 from experiments.framework.asking import NOT_THE_VIEW, VERSIONS, progress_bar
-from experiments.framework.views import load
+from experiments.timing.cases import Case
 from shared.client import Sparge
-from shared.errors import InvalidInput, SpargeError
+from shared.errors import SpargeError
 from shared.schemas.route import Nothing
 from shared.schemas.task import LIST_TASKS
 
-PAIRS = (("handover", "spatula"), ("handover", "bottle"), ("hammering", "hammer"))
-"""What the thesis measures: task and class (6.5.1)."""
 COMPARABLE = ("primitive_recovery", "reasoning", "matching")
 """Our stages that do what the thesis's total covers: no perception, no grasp detection."""
 CHECKS = "checks"
@@ -95,57 +93,6 @@ class Timed:
             "total": f"{1e3 * self.total:.2f}",
             "seen": f"{1e3 * self.seen:.2f}",
         }
-
-
-@dataclass(frozen=True)
-class Case:
-    """A view and the task that it is asked for."""
-
-    view: ShownView
-    task: str
-    class_name: str
-
-
-def cases_of(views: ViewSet, per_pair: int) -> list[Case]:
-    """Return the thesis's pairs; of views whose classes are unknown, every object's first task.
-
-    Raises
-    ------
-    InvalidInput
-        There are no views.
-    """
-    cases: list[Case] = []
-    for task, class_name in PAIRS:
-        chosen = _spread(of_class(views, class_name), per_pair)
-        cases += [Case(load(file), task, class_name) for file in chosen.files]
-    if not cases:
-        loaded = [(file.object_name, load(file)) for file in views.files[: per_pair * len(PAIRS)]]
-        cases = [Case(view, view.tasks[0], name) for name, view in loaded if view.tasks]
-    if not cases:
-        raise InvalidInput("there are no views to time requests with")
-    return cases
-
-
-def all_cases(views: ViewSet, per_object: int) -> list[Case]:
-    """Return every task of some views of each object."""
-    return [
-        Case(view, task, views.thing(file).class_name)
-        for file in views.limited(per_object).files
-        for view in [load(file)]
-        for task in view.tasks
-    ]
-
-
-def of_class(views: ViewSet, class_name: str) -> ViewSet:
-    """Return the views of a class of objects."""
-    return views.only(lambda file: views.thing(file).class_name == class_name)
-
-
-def _spread(views: ViewSet, count: int) -> ViewSet:
-    """Return `count` views, as evenly as can be over the objects: all first views come first."""
-    order = sorted(views.files, key=lambda file: (file.number, file.object_name))
-    kept = set(order[:count])
-    return views.only(kept.__contains__)
 
 
 def measure(context: Context, cases: Sequence[Case], tasks: int, describe: str) -> list[Timed]:

@@ -20,6 +20,7 @@
 
 :- module(default_handles,
           [ handle/2,                   % ?ID, ?Tool
+            lever/2,                    % ?ID, ?Tool
             stem/2,                     % ?ID, ?Tool
             haft/2,                     % ?ID, ?Tool
             rings/2,                    % ?ID, ?Tool
@@ -34,10 +35,17 @@
 %
 %   Part ID is a handle, of any kind, and carries part Tool.
 
-handle(ID, Tool) :- stem(ID, Tool).
-handle(ID, Tool) :- haft(ID, Tool).
-handle(ID, Tool) :- rings(ID, Tool).
+handle(ID, Tool) :- lever(ID, Tool).
 handle(ID, Tool) :- ear(ID, Tool).
+
+%!  lever(?ID, ?Tool) is nondet.
+%
+%   A handle that keeps the hand away from what it carries, so that one can work
+%   with that: any kind but an ear.
+
+lever(ID, Tool) :- stem(ID, Tool).
+lever(ID, Tool) :- haft(ID, Tool).
+lever(ID, Tool) :- rings(ID, Tool).
 
 %!  stem(?ID, ?Tool) is nondet.
 %
@@ -57,10 +65,18 @@ stem(ID, Tool) :-
     ID \= Tool,
     at_least(stretch(ID) / stretch(Tool), 1.6),
     at_least(seen(Tool), 0.01),
-    at_most(width(ID) / across(Tool), 1),
+    at_most(width(ID) / across(Tool), 1.1),
     \+ outweighed(Tool, ID),
-    at_most(stretch(Tool), 2.3),
+    stubby(Tool),
     \+ rings(Tool, ID).
+
+%   Hardly longer than wide along the object; a flat blade or bowl may be longer.
+
+stubby(Tool) :-
+    at_most(stretch(Tool), 1.5).
+stubby(Tool) :-
+    at_most(stretch(Tool), 2.3),
+    at_most(thickness(Tool) / width(Tool), 0.55).
 
 %   Another part, no handle either, is a good deal larger: then that is the tool, and
 %   this is a hook, or a piece of it.
@@ -106,7 +122,7 @@ rings(ID, Tool) :-
     ID \= Tool,
     at_most(holes(Tool), 0),
     at_least(stretch(Tool) / stretch(ID), 0.9),
-    at_most(thickness(Tool) / thickness(ID), 1.3),
+    at_most(thickness(Tool) / thickness(ID), 1.8),
     at_most(length(Tool) / length(ID), 1.8).
 
 %!  ear(?ID, ?Tool) is nondet.

@@ -5,8 +5,9 @@
     ours: by how it lies in the object and what it is joined to (quantities.pl,
     handles.pl) instead of by its own dimensions alone.
 
-    - grasp is a handle. wrap_grasp is what a person's hand goes around in use: a
-      handle, or the body of an object without one. Handing over leaves it free.
+    - grasp is a handle to work with, hence not the ear of a mug. wrap_grasp is what
+      a person's hand goes around in use: any handle, or the body of an object
+      without one. Handing over leaves it free.
     - The functional parts (pound, scoop, support, cut) are known by the handle
       that carries them: the same block is no hammer without one.
 */
@@ -33,7 +34,7 @@ held_if_alone(handover).
 %   Part ID can serve as Affordance.
 
 partAffordance(ID, grasp) :-
-    handle(ID, _).
+    lever(ID, _).
 
 partAffordance(ID, wrap_grasp) :-
     taken_in_use(ID).

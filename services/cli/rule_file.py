@@ -90,7 +90,7 @@ def _read(file: Path, text: str) -> tuple[list[str], Definition | None]:
             _problem(each["loc"], each["msg"])
             for each in error.errors(include_url=False, include_context=False)
         ]
-        return _placed(file, text, list(dict.fromkeys(problems))), None
+        return _placed(file, text, _innermost(problems)), None
 
 
 def _problem(location: tuple[int | str, ...], message: str) -> Problem:
@@ -100,6 +100,16 @@ def _problem(location: tuple[int | str, ...], message: str) -> Problem:
         path = path[: path.index("value") + 1]
         message = "takes a number, three lengths in metres, a name, names, or nothing"
     return Problem(".".join(path), message)
+
+
+def _innermost(problems: list[Problem]) -> list[Problem]:
+    """Return each problem once, without those that only follow from one further inside."""
+    fields = {each.field for each in problems}
+    return [
+        each
+        for each in dict.fromkeys(problems)
+        if not any(other.startswith(f"{each.field}.") for other in fields)
+    ]
 
 
 def _placed(file: Path, text: str, problems: list[Problem]) -> list[str]:

@@ -49,6 +49,17 @@ def _principal_frame(scatter: Array) -> tuple[Array, Array]:
                     a[p, k], a[q, k] = c * a[p, k] - s * a[q, k], s * a[p, k] + c * a[q, k]
                 for k in range(3):
                     v[k, p], v[k, q] = c * v[k, p] - s * v[k, q], s * v[k, p] + c * v[k, q]
-    values = np.array([a[0, 0], a[1, 1], a[2, 2]])
-    order = np.argsort(values)
-    return values[order], v[:, order]
+    values, vectors = np.empty(3), np.empty((3, 3))
+    first, last = 0, 0
+    for k in range(1, 3):
+        if a[k, k] < a[first, first]:
+            first = k
+        if a[k, k] >= a[last, last]:
+            last = k
+    if first == last:  # all are equal
+        first, last = 0, 2
+    order = (first, 3 - first - last, last)
+    for k in range(3):
+        values[k] = a[order[k], order[k]]
+        vectors[:, k] = v[:, order[k]]
+    return values, vectors

@@ -2,8 +2,6 @@
 
 from __future__ import annotations
 
-from typing import get_args
-
 import numpy as np
 from numpy.typing import NDArray
 
@@ -12,6 +10,7 @@ from services.primitive_recovery.ems.hierarchy import Part, decompose
 from services.primitive_recovery.ems.overlap import kept_after_overlap
 from services.primitive_recovery.parts.recovery import recover_parts
 from services.primitive_recovery.parts.segment import Cutter
+from services.primitive_recovery.rehearsal import rehearsal
 from services.primitive_recovery.settings import PrimitiveRecoverySettings
 from services.primitive_recovery.validation import checked_cloud
 from shared.schemas.primitive import (
@@ -82,13 +81,8 @@ class PrimitiveRecovery:
 
     def warm_up(self) -> None:
         """Compile all kernels, so that the first request is as fast as the next."""
-        rng = np.random.default_rng(0)
-        directions = rng.normal(size=(600, 3))
-        ball = 0.03 * directions / np.linalg.norm(directions, axis=1, keepdims=True)
-        rod = rng.uniform(-1.0, 1.0, (600, 3)) * np.array([0.005, 0.005, 0.1])
-        cloud = np.vstack([ball, rod + np.array([0.0, 0.0, 0.13])])
-        for method in get_args(Method):
-            self.recover(RecoverRequest(points=cloud, method=method, viewpoint=(1.0, 0.0, 0.0)))
+        for request in rehearsal():
+            self.recover(request)
 
 
 def _primitive(index: int, part: Part, shape: ShapeClass, probability: float) -> Primitive:

@@ -53,9 +53,9 @@ class Admission:
             Something is to be forgotten that was not learned.
         """
         kept = learned.after(change.model_copy(update=_NOTHING_NEW))
-        _known(change.forget_tasks, learned.tasks, "task")
-        _known(change.forget_affordances, learned.affordances, "affordance")
-        _known(change.forget_rules, learned.rules, "rule")
+        require_known(change.forget_tasks, learned.tasks, "task")
+        require_known(change.forget_affordances, learned.affordances, "affordance")
+        require_known(change.forget_rules, learned.rules, "rule")
         after = learned.after(change)
         if len(after) > self.max_learned:
             raise Conflict(
@@ -181,7 +181,8 @@ def _tasks_of(rules: Iterable[RuleDefinition]) -> set[str]:
     return {rule.task for rule in rules if rule.task is not None}
 
 
-def _known(names: Iterable[str], learned: Mapping[str, object], kind: str) -> None:
+def require_known(names: Iterable[str], learned: Mapping[str, object], kind: str) -> None:
+    """Raise `NotFound` for a name that was not learned."""
     for name in names:
         if name not in learned:
             raise NotFound(

@@ -67,7 +67,7 @@ def _numbers(rule: RuleBody, words: Mapping[str, Word]) -> Iterator[Problem]:
     quantities = {
         (word.quantity, each.of)
         for each in rule.conditions
-        if (word := words[each.condition]).takes == "number"
+        if (word := words[each.condition]).takes == "number" and word.quantity not in _ASPECTS
     }
     for quantity, parts in sorted(quantities, key=repr):
         low = _bounds(rule, words, "number", quantity, parts, "min")
@@ -107,11 +107,18 @@ def _dimensions(rule: RuleBody, words: Mapping[str, Word]) -> Iterator[Problem]:
         lows = _bounds(rule, words, "lengths", "dimension", parts, "min")
         highs = _bounds(rule, words, "lengths", "dimension", parts, "max")
         low, high = [0.0, 0.0, 0.0], [math.inf, math.inf, math.inf]
-        for i in range(3):
-            low[i] = max([low[max(i - 1, 0)], *(bound.values[i] for bound in lows)])
-        for i in (2, 1, 0):
-            high[i] = min([high[min(i + 1, 2)], *(bound.values[i] for bound in highs)])
-        last = max((bound.index for bound in (*lows, *highs)), default=0)
+        used = [*lows, *highs]
+        for i, aspect in enumerate(_ASPECTS):
+            single = _bounds(rule, words, "number", aspect, parts, "min")
+            used += single
+            values = [bound.values[i] for bound in lows] + [bound.values[0] for bound in single]
+            low[i] = max([low[max(i - 1, 0)], *values])
+        for i, aspect in reversed(list(enumerate(_ASPECTS))):
+            single = _bounds(rule, words, "number", aspect, parts, "max")
+            used += single
+            values = [bound.values[i] for bound in highs] + [bound.values[0] for bound in single]
+            high[i] = min([high[min(i + 1, 2)], *values])
+        last = max((bound.index for bound in used), default=0)
         impossible = [i for i in range(3) if low[i] > high[i] or high[i] == 0]
         if impossible:
             i = impossible[0]

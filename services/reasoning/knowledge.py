@@ -7,6 +7,7 @@ from collections.abc import Iterator
 
 from rdflib import Graph
 
+from services.reasoning.admission import require_known
 from services.reasoning.change import Change, Learned
 from services.reasoning.definition import listed
 from services.reasoning.exchange import graph_of, read_document
@@ -93,8 +94,8 @@ class Knowledge:
         StageUnavailable
             It cannot be stored.
         """
+        (admitted,) = self._memory.change(Change(tasks=(definition,))).tasks
         with self._reading() as learned:
-            (admitted,) = self._memory.change(Change(tasks=(definition,))).tasks
             return self._task(admitted, learned.tasks_with_rules())
 
     def delete_task(self, name: str) -> Task:
@@ -125,8 +126,8 @@ class Knowledge:
                 added = sorted(learned.tasks)
                 raise NotFound(f"there is no task {name!r} to delete", task=name, added=added[:100])
             task = self._task(gone, learned.tasks_with_rules())
-            self._memory.change(Change(forget_tasks=(name,)))
-            return task
+        self._memory.change(Change(forget_tasks=(name,)))
+        return task
 
     def add_affordance(self, definition: AffordanceDefinition) -> Affordance:
         """Add an affordance with the rules that find it.
@@ -156,11 +157,11 @@ class Knowledge:
         with self._reading() as learned:
             if name in self._shipped.affordances:
                 raise _is_shipped("affordance", name)
-            gone = learned.affordances.get(name)
+            require_known([name], learned.affordances, "affordance")
+            gone = learned.affordances[name]
             rules = tuple(each.name for each in learned.rules_for(name))
-            self._memory.change(Change(forget_affordances=(name,), forget_rules=rules))
-            assert gone is not None, "an unknown name was refused"
-            return gone
+        self._memory.change(Change(forget_affordances=(name,), forget_rules=rules))
+        return gone
 
     def add_rule(self, definition: RuleDefinition) -> Rule:
         """Teach a rule for a Version 1 task or a Version 2 affordance.
@@ -175,9 +176,8 @@ class Knowledge:
         StageUnavailable
             It cannot be stored.
         """
-        with self._reading():
-            (admitted,) = self._memory.change(Change(rules=(definition,))).rules
-            return self._rule(admitted)
+        (admitted,) = self._memory.change(Change(rules=(definition,))).rules
+        return self._rule(admitted)
 
     def delete_rule(self, name: str) -> Rule:
         """Forget a taught rule.
@@ -190,11 +190,10 @@ class Knowledge:
             It is the last rule of an affordance.
         """
         with self._reading() as learned:
-            rule = learned.rules.get(name)
-            gone = None if rule is None else self._rule(rule)
-            self._memory.change(Change(forget_rules=(name,)))
-            assert gone is not None, "an unknown name was refused"
-            return gone
+            require_known([name], learned.rules, "rule")
+            gone = self._rule(learned.rules[name])
+        self._memory.change(Change(forget_rules=(name,)))
+        return gone
 
     def graph(self) -> Graph:
         """Return all that is known as one ontology."""
@@ -230,7 +229,7 @@ class Knowledge:
         with self._reading() as learned:
             if not wanted.replace:
                 change = _without_known(change, learned)
-            self._memory.change(change)
+        self._memory.change(change)
         return KnowledgeImported(
             tasks=tuple(each.name for each in change.tasks),
             affordances=tuple(each.name for each in change.affordances),
@@ -275,7 +274,7 @@ class Knowledge:
 
     def _rule(self, definition: RuleDefinition) -> Rule:
         clauses = self._memory.clauses(definition.name)
-        return Rule(**dict(definition), prolog=clauses[definition.name])
+        return Rule(**dict(definition), prolog=clauses.get(definition.name, ""))  # just forgotten
 
     def _task(self, definition: TaskDefinition, ruled: set[str]) -> Task:
         name = definition.name

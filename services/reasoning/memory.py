@@ -67,13 +67,8 @@ class Memory:
             self._journal.close()
             self._tell(Change(clear=True))
 
-    def refresh(self) -> bool:
+    def refresh(self) -> None:
         """Take over what other processes changed; costs one `stat` when there is nothing.
-
-        Returns
-        -------
-        bool
-            There was something.
 
         Raises
         ------
@@ -90,7 +85,6 @@ class Memory:
             else:
                 for change in news:
                     self._tell(change)
-            return bool(news)
 
     def change(self, wanted: Change) -> Change:
         """Admit, store and tell a change; return it as it was admitted.
@@ -106,21 +100,22 @@ class Memory:
         """
         with self.lock:
             self.refresh()
+            self._admission.admit(wanted, self.learned)
+        # Waiting for another process is done without the lock: deciding goes on.
+        with self._journal.writing(), self.lock:
+            self.refresh()
             admitted = self._admission.admit(wanted, self.learned)
-            with self._journal.writing():
-                if self.refresh():
-                    admitted = self._admission.admit(wanted, self.learned)
-                if self._journal.needs_rewrite():
-                    self._journal.rewrite(self.learned.snapshot())
-                self._journal.append(admitted)
-                self.learned.apply(admitted)
-                if self._journal.records > max(_REWRITE_AFTER, 4 * len(self.learned)):
-                    self._journal.rewrite(self.learned.snapshot())
+            if self._journal.needs_rewrite():
+                self._journal.rewrite(self.learned.snapshot())
+            self._journal.append(admitted)
+            self.learned.apply(admitted)
+            if self._journal.records > max(_REWRITE_AFTER, 4 * len(self.learned)):
+                self._journal.rewrite(self.learned.snapshot())
             if admitted.clear:
                 self._tell_everything()
             else:
                 self._tell(admitted)
-            return admitted
+        return admitted
 
     def clauses(self, *names: str) -> JsonObject:
         """Return learned rules as Prolog text, by name; all of them when none is named."""

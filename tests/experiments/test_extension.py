@@ -12,7 +12,7 @@ from shared.client import Sparge
 from shared.errors import InvalidInput
 from shared.schemas.route import Nothing
 from shared.schemas.rule import LIST_RULES
-from shared.schemas.task import LIST_TASKS
+from shared.schemas.task import LIST_AFFORDANCES, LIST_TASKS
 from tests.experiments.conftest import MakeContext
 
 
@@ -33,7 +33,7 @@ def test_a_knife_before_and_after_the_lesson(make_context: MakeContext) -> None:
     rows = {row[3]: row[5:] for row in lessons.rows if row[2] == "v2"}
     assert rows["after"] == rows["built in"]
     assert [row[1] for row in steps.rows] == ["yes", "yes"]
-    assert "11 and 8 conditions" in str(steps.rows[0][2])
+    assert "12 and 8 conditions on 2 parts" in str(steps.rows[0][2])
     assert "1/1 views" in str(steps.rows[1][4])
 
 
@@ -44,6 +44,7 @@ def versions_knowing(sparge: Sparge, name: str) -> tuple[str, ...]:
 
 def test_the_lesson_is_forgotten_after_an_error(sparge: Sparge) -> None:
     lesson = lesson_on(known_task(sparge, "cutting"), "experiment_0_test")
+    affordances = sparge.call(LIST_AFFORDANCES, Nothing())
     seen = []
 
     def interrupted() -> None:
@@ -56,6 +57,7 @@ def test_the_lesson_is_forgotten_after_an_error(sparge: Sparge) -> None:
     assert seen == [("v1", "v2")]
     assert versions_knowing(sparge, lesson.name) == ()
     assert sparge.call(LIST_RULES, Nothing()).rules == ()
+    assert sparge.call(LIST_AFFORDANCES, Nothing()) == affordances
 
 
 def test_without_a_thing_for_cutting_there_is_no_experiment(make_context: MakeContext) -> None:

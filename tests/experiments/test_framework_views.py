@@ -3,7 +3,9 @@
 from __future__ import annotations
 
 from collections.abc import Sequence
+from dataclasses import replace
 from pathlib import Path
+from typing import Any, cast
 
 import numpy as np
 import pytest
@@ -11,7 +13,7 @@ from rich.console import Console
 
 from experiments.framework import Experiment, Findings, ViewSet
 from experiments.framework.catalogue_views import catalogue_sets
-from experiments.framework.conduct import view_sets
+from experiments.framework.conduct import context_for, view_sets
 from experiments.framework.views import NOT_AFFORDED, Thing, load, scan_sets
 from shared.errors import InvalidInput
 
@@ -148,3 +150,19 @@ def test_an_experiment_gets_the_views_that_it_needs(
     ]  # fmt: skip
     assert names(True, variants=1) == ["catalogue", "variants"]
     assert names(False, [views_folder], variants=1) == ["views_clean"]
+
+
+def test_scans_may_be_asked_about_more_often_than_the_catalogue(few_things: ViewSet) -> None:
+    scans = replace(few_things, files=few_things.files * 5)
+    catalogue = replace(scans, is_catalogue=True)
+    wanted = Experiment("it", "", "", lambda _: Findings("", ()), views_per_object=2, scan_views=4)
+
+    def asked(limit: int | None) -> list[int]:
+        context = context_for(
+            wanted, cast("Any", None), Console(quiet=True), Path(), (catalogue, scans),
+            limit=limit, seed=0, workers=1,
+        )  # fmt: skip
+        return [len(each.files) // len(few_things.files) for each in context.sets]
+
+    assert asked(None) == [2, 4]
+    assert asked(1) == [1, 1]

@@ -19,11 +19,12 @@ from experiments.catalogue.model import Mesh, Part
 from experiments.framework import Context, Share, ViewSet
 from experiments.framework.plots import png
 from experiments.framework.report import save
-from experiments.primitives.cut import METHODS, Cut, RegionCut
+from experiments.primitives.class_tables import class_table
 from experiments.primitives.experiment import PRIMITIVES, run
 from experiments.primitives.match import match
+from experiments.primitives.model import METHODS, Cut, RegionCut
 from experiments.primitives.sheet import worst_views
-from experiments.primitives.tables import class_table, headline, size_table, time_table
+from experiments.primitives.tables import headline, size_table, time_table
 from experiments.primitives.truth import true_part
 from shared.client import Sparge
 from shared.errors import InvalidInput

@@ -5,8 +5,8 @@ from __future__ import annotations
 import pytest
 
 from experiments.framework import MeanStd, ViewSet
+from experiments.timing.cases import cases_of
 from experiments.timing.experiment import run
-from experiments.timing.measure import cases_of
 from shared.errors import InvalidInput
 from shared.schemas.route import Nothing
 from shared.schemas.task import LIST_TASKS

@@ -12,7 +12,7 @@ import math
 import numpy as np
 from numpy.typing import NDArray
 
-from services.primitive_recovery.ems.jit import kernel
+from shared.jit import kernel
 
 Array = NDArray[np.float64]
 

@@ -7,21 +7,19 @@ import math
 import numpy as np
 from numpy.typing import NDArray
 
-from services.primitive_recovery.ems.jit import kernel
 from services.primitive_recovery.ems.kernels import turned
 from services.primitive_recovery.fitting.terms import (
     point_terms,
     prior_terms,
-    spread,
     support_terms,
 )
+from shared.jit import kernel
+from shared.sorting import ascending_order
 
 Array = NDArray[np.float64]
 
 INDEPENDENT = 5.0
 """How many independent measurements the model's error is: neighbours are off alike."""
-CLOSER, CLOSEST = 0.7, 0.1
-"""Shares of the model's error below which the points' own counts, and that it is at least."""
 SETTLED = 1e-2
 """A step that lowers the cost by less, and by less than a ten-thousandth, is the last."""
 
@@ -193,13 +191,11 @@ def search(
         Each start's own; `odds` is the logarithm of its prior odds.
     limits : (2, 5) array
     noise, model : float
-        Standard deviations of the points, and of a part's surface about a superquadric's;
-        where the points lie closer to it, the latter is what they show.
+        Standard deviations of the points, and of a part's surface about a superquadric's.
     count : int
         How many points the noise was drawn for.
-    finalists : (5,) array
-        How many starts descend a little, their steps; how many descend to the end, their
-        steps, and those with the error that the points show.
+    finalists : (4,) array
+        How many starts descend a little, their steps; how many go to the end, their steps.
 
     Returns
     -------
@@ -214,7 +210,7 @@ def search(
         costs[h] = total(coarse, supports[h], priors[h], rotations[h], shapes[h], rotations[h],
                          positions[h], width, information / coarse.shape[0], matrix, gradient,
                          ) - odds[h]  # fmt: skip
-    first = np.argsort(costs, kind="mergesort")[: finalists[0]]
+    first = ascending_order(costs)[: finalists[0]]
     shapes_1, positions_1, rotations_1 = shapes.copy(), positions.copy(), rotations.copy()
     costs[:] = np.inf
     for h in first:
@@ -224,17 +220,10 @@ def search(
         costs[h] = cost - odds[h]
     best, best_cost = -1, np.inf
     shape, rotation, position, best_matrix = shapes[0], rotations[0], positions[0], matrix
-    for h in np.argsort(costs, kind="mergesort")[: finalists[2]]:
+    for h in ascending_order(costs)[: finalists[2]]:
         cost, shape_2, rotation_2, position_2, matrix_2 = descend(
             points, supports[h], priors[h], rotations[h], shapes_1[h], rotations_1[h],
             positions_1[h], limits, width, information / points.shape[0], finalists[3])  # fmt: skip
-        shown = 1.4826 * spread(points, shape_2, rotation_2, position_2)
-        shown = math.sqrt(max(shown * shown - noise * noise, (CLOSEST * model) ** 2))
-        if shown < CLOSER * model:
-            cost, shape_2, rotation_2, position_2, matrix_2 = descend(
-                points, supports[h], priors[h], rotations[h], shape_2, rotation_2, position_2,
-                limits, width, informed(noise, shown, count) / points.shape[0],
-                finalists[4])  # fmt: skip
         cost -= odds[h]
         if best < 0 or cost < best_cost:
             best, best_cost = h, cost

@@ -7,7 +7,8 @@ import math
 import numpy as np
 from numpy.typing import NDArray
 
-from services.primitive_recovery.ems.jit import kernel
+from shared.jit import kernel
+from shared.sorting import middle
 
 Array = NDArray[np.float64]
 
@@ -68,7 +69,7 @@ def nearest_spacing(flat: Array, probes: int) -> float:
                 best = squared
         found[k] = best
     found = found[np.isfinite(found)]
-    return math.sqrt(np.median(found)) if found.shape[0] > 0 else 0.0
+    return math.sqrt(middle(found)) if found.shape[0] > 0 else 0.0
 
 
 @kernel

@@ -23,7 +23,7 @@ def candidate_frames(points: Array, normal: Array | None) -> Array:
     axis level. And about the shortest one, for flat parts.
     """
     _, axes = principal_axes(points)
-    long, middle, short = axes.T
+    long, middle, short = np.ascontiguousarray(axes.T)
     frames = [_turned(points, short, long)]
     if normal is None:
         return np.array([*frames, _turned(points, long, middle)])

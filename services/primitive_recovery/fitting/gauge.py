@@ -4,7 +4,7 @@ from __future__ import annotations
 
 import math
 
-from services.primitive_recovery.ems.jit import kernel
+from shared.jit import kernel
 
 TINY = 1e-12
 

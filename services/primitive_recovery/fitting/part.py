@@ -9,6 +9,7 @@ from services.primitive_recovery.ems.kernels import radial_distances
 from services.primitive_recovery.fitting.box import plain_box
 from services.primitive_recovery.fitting.contact import support_contact
 from services.primitive_recovery.fitting.covariance import covariance_of
+from services.primitive_recovery.fitting.deformation import deformation_of
 from services.primitive_recovery.fitting.descent import search
 from services.primitive_recovery.fitting.fit import PartFit
 from services.primitive_recovery.fitting.frames import candidate_frames
@@ -22,12 +23,12 @@ Array = NDArray[np.float64]
 
 LEAST_POINTS = 11
 """Fewer points get a plain box: a superquadric has as many unknowns."""
-FIT_POINTS, COARSE_POINTS, FRAME_POINTS, REACH_POINTS = 300, 80, 200, 1500
+FIT_POINTS, COARSE_POINTS, FRAME_POINTS, REACH_POINTS = 200, 60, 200, 1000
 """How many points, drawn at random, the steps of a fit look at."""
 MODEL = 0.015
 """How far a part's surface is off the best superquadric's, as a share of its width."""
-FINALISTS = np.array([4, 4, 1, 10, 8])
-"""Starts that descend a little, steps they take; starts that go to the end, steps, and last steps."""
+FINALISTS = np.array([4, 4, 1, 12])
+"""Starts that descend a little, steps they take; starts that go to the end, steps."""
 LIMITS = np.array([[0.1, 0.1, *[np.log(1e-3)] * 3], [2.0, 2.0, *[np.log(3.0)] * 3]])
 """Of the exponents, and of the semi-axes' logarithms in the unit of the fit."""
 
@@ -67,8 +68,8 @@ def fit_part(
     viewpoint = np.asarray(viewpoint, dtype=np.float64)
     normal = _upward(plane, up)
     centre = points.mean(axis=0)
-    scale = float(np.abs(points - centre).max())
-    if len(points) < LEAST_POINTS or scale <= 1e-9 * float(np.abs(centre - viewpoint).max()):
+    scale = float(np.sqrt(((points - centre) ** 2).sum(axis=1).max()))
+    if len(points) < LEAST_POINTS or scale <= 1e-9 * float(np.linalg.norm(centre - viewpoint)):
         return plain_box(points, viewpoint, normal)
     order = rng.permutation(len(points)) if len(points) > COARSE_POINTS else np.arange(len(points))
     some = np.ascontiguousarray(points[order[:REACH_POINTS]])
@@ -93,16 +94,18 @@ def fit_part(
     distances = radial_distances(
         cloud, np.concatenate([shape[:2], np.exp(shape[2:])]), rotation, position
     )
+    residual = scale * float(np.sqrt((distances**2).mean()))
     signs = _towards(viewpoint - centre - scale * position, rotation)
     axes = scale * np.exp(shape[2:])
+    own = scale * (cloud - position) @ (rotation * signs)
     quaternion = quaternion_from_matrix(rotation * signs)
     return PartFit(
         superquadric=Superquadric.from_vector(
             [*shape[:2], *axes, *(centre + scale * position), *quaternion]
         ),
         covariance=covariance_of(matrix, axes, scale, signs),
-        residual=scale * float(np.sqrt((distances**2).mean())),
-        deformation=None,
+        residual=residual,
+        deformation=deformation_of(own, shape[:2], axes, residual, scale * noise),
         rests=contact is not None and contact.touched_by(shape, rotation, position),
     )
 

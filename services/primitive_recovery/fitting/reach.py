@@ -92,7 +92,9 @@ def visible_reach(
     if edge.frame is None:
         facing[:] = 1.0
     lift = noise * np.abs(facing)
-    many = np.maximum(rivals(points, normals, high - 2.0 * lift), 1.0)
+    many = np.ones(len(high))
+    if noise > 0:
+        many = np.maximum(rivals(points, normals, high - 2.0 * lift), 1.0)
     lateral = 0.5 * edge.spacing * np.sqrt(np.maximum(1.0 - facing**2, 0.0))
     tolerance = np.sqrt(lift**2 + lateral**2 + (MODEL * (high - low)) ** 2)
     farthest = high - lift * np.sqrt(2 * np.log(many))

@@ -13,8 +13,8 @@ import math
 import numpy as np
 from numpy.typing import NDArray
 
-from services.primitive_recovery.ems.jit import kernel
 from services.primitive_recovery.fitting.gauge import TINY, log_gauge
+from shared.jit import kernel
 
 Array = NDArray[np.float64]
 
@@ -109,32 +109,6 @@ def point_terms(
             for j in range(i + 1):
                 matrix[i, j] += weighted * rows[j]
     return float(0.5 * share * width * width * cost)
-
-
-@kernel
-def spread(points: Array, shape: Array, rotation: Array, position: Array) -> float:
-    """Return the median distance, as of `point_terms`, of points (n, 3) from the surface."""
-    a = np.exp(shape[2:5])
-    local = np.empty(3)
-    distances = np.empty(points.shape[0])
-    for n in range(points.shape[0]):
-        squared = 0.0
-        for k in range(3):
-            value = 0.0
-            for m in range(3):
-                value += rotation[m, k] * (points[n, m] - position[m])
-            local[k] = max(abs(value), TINY * a[k])
-            squared += local[k] * local[k]
-        scale, x, y, z, _, _ = log_gauge(
-            math.log(local[0] / a[0]),
-            math.log(local[1] / a[1]),
-            math.log(local[2] / a[2]),
-            shape[0],
-            shape[1],
-        )
-        steep = (x / local[0]) ** 2 + (y / local[1]) ** 2 + (z / local[2]) ** 2
-        distances[n] = abs(1.0 - math.exp(-scale)) / math.sqrt(steep)
-    return float(np.median(distances))
 
 
 @kernel

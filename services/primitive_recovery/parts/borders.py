@@ -41,47 +41,37 @@ def joints_of(
     to the one that comes closest.
     """
     count = int(labels.max()) + 1
-    found: list[PartJoint] = []
     if count == 1:
         return ()
-    part = np.full(picture.mask.shape, -1, dtype=np.int16)
+    height, width = picture.mask.shape
+    part = np.full((height, width), -1, dtype=np.intp)
     part[picture.row, picture.column] = labels
-    linked = np.zeros((count, count), dtype=bool)
-    cells: dict[tuple[int, int], list[NDArray[np.intp]]] = {}
-    for one, other in (
-        (part[:-1], part[1:]),
-        (part[:, :-1], part[:, 1:]),
-    ):
-        down = 1 if one.shape[0] < part.shape[0] else 0
-        rows, columns = np.nonzero((one >= 0) & (other >= 0) & (one != other))
-        a, b = one[rows, columns], other[rows, columns]
-        for i in range(count):
-            for j in range(i + 1, count):
-                here = ((a == i) & (b == j)) | ((a == j) & (b == i))
-                if here.any():
-                    r, c = rows[here], columns[here]
-                    flat = np.concatenate(
-                        [r * part.shape[1] + c, (r + down) * part.shape[1] + c + 1 - down]
-                    )
-                    cells.setdefault((i, j), []).append(flat)
-    of_point = picture.row * part.shape[1] + picture.column
-    for pair, lists in sorted(cells.items()):
-        border = np.unique(np.concatenate(lists))
+    cell = np.arange(height * width).reshape(height, width)
+    here = np.concatenate([cell[:-1].ravel(), cell[:, :-1].ravel()])
+    there = np.concatenate([cell[1:].ravel(), cell[:, 1:].ravel()])
+    one, other = part.ravel()[here], part.ravel()[there]
+    meet = (one >= 0) & (other >= 0) & (one != other)
+    here, there = here[meet], there[meet]
+    low, high = np.minimum(one, other)[meet], np.maximum(one, other)[meet]
+    of_point = picture.row * width + picture.column
+    found: list[PartJoint] = []
+    for key in np.unique(low * count + high):
+        own = low * count + high == key
+        border = np.union1d(here[own], there[own])
         if len(border) >= _FEWEST:
-            found.append(PartJoint(pair, points[np.isin(of_point, border)].mean(axis=0)))
-            linked[pair] = linked[pair[::-1]] = True
-    for lonely in np.flatnonzero(~linked.any(axis=1)):
-        if not linked[lonely].any():
-            joint = _closest(points, labels, int(lonely))
-            found.append(joint)
-            linked[joint.parts] = linked[joint.parts[::-1]] = True
+            middle = points[np.isin(of_point, border)].mean(axis=0)
+            found.append(PartJoint((int(key // count), int(key % count)), middle))
+    for part_alone in range(count):
+        if not any(part_alone in joint.parts for joint in found):
+            found.append(_closest(points, labels, part_alone))
     return tuple(found)
 
 
-def _closest(points: Array, labels: NDArray[np.int16], lonely: int) -> PartJoint:
-    own, rest = np.flatnonzero(labels == lonely), np.flatnonzero(labels != lonely)
-    distance, index = cKDTree(points[rest]).query(points[own])
+def _closest(points: Array, labels: NDArray[np.int16], alone: int) -> PartJoint:
+    own, rest = np.flatnonzero(labels == alone), np.flatnonzero(labels != alone)
+    found = cKDTree(points[rest]).query(points[own])
+    distance, nearest = np.asarray(found[0]), np.asarray(found[1], dtype=np.intp)
     k = int(distance.argmin())
-    other = int(labels[rest[index[k]]])
-    middle = (points[own[k]] + points[rest[index[k]]]) / 2
-    return PartJoint((min(lonely, other), max(lonely, other)), middle)
+    partner = int(labels[rest[nearest[k]]])
+    middle = (points[own[k]] + points[rest[nearest[k]]]) / 2
+    return PartJoint((min(alone, partner), max(alone, partner)), middle)

@@ -15,8 +15,9 @@ Mask = NDArray[np.bool_]
 def distance_to_unset(mask: Mask) -> Array:
     """Return every cell's distance (H, W) to the nearest unset one, in cells.
 
-    Nothing lies beyond the picture; where no cell is unset, all are far. Felzenszwalb and Huttenlocher: Distance
-    Transforms of Sampled Functions, 2012: exact, in time linear in the cells.
+    Nothing lies beyond the picture; where no cell is unset, all are far. Felzenszwalb
+    and Huttenlocher: Distance Transforms of Sampled Functions, 2012: exact, in time
+    linear in the cells.
     """
     rows, columns = mask.shape
     far = float(rows + columns)
@@ -200,3 +201,42 @@ def grown(mask: Mask, times: int) -> Mask:
                     both[min(i + 1, rows - 1), j] = True
         held = both
     return held
+
+
+@kernel
+def cell_means(
+    mask: Mask, row: NDArray[np.int64], column: NDArray[np.int64], values: Array
+) -> Array:
+    """Return the mean value (H, W) of each cell's points.
+
+    Cells of the mask without points take the mean of their neighbours, or of all.
+
+    Parameters
+    ----------
+    mask : (H, W) bool array
+        Cells that get a value; empty along the picture's border.
+    row, column : (N,) array
+        Cell of each point.
+    values : (N,) array
+        Value of each point.
+    """
+    rows, columns = mask.shape
+    total, number = np.zeros((rows, columns)), np.zeros((rows, columns))
+    for k in range(len(values)):
+        total[row[k], column[k]] += values[k]
+        number[row[k], column[k]] += 1
+    overall = values.sum() / max(len(values), 1)
+    found = np.zeros((rows, columns))
+    for i in range(rows):
+        for j in range(columns):
+            if number[i, j] > 0:
+                found[i, j] = total[i, j] / number[i, j]
+            elif mask[i, j]:
+                held, around = 0.0, 0
+                for y in range(i - 1, i + 2):
+                    for x in range(j - 1, j + 2):
+                        if number[y, x] > 0:
+                            held += total[y, x] / number[y, x]
+                            around += 1
+                found[i, j] = held / around if around else overall
+    return found

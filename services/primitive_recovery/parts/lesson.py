@@ -44,7 +44,8 @@ def read_lesson(path: Path, rng: np.random.Generator) -> Lesson:
     """Return the object in a view (docs/dataset.md), as perception might have found it.
 
     At random the support plane is unknown, or a bit off, and points close to
-    it are lost.
+    it are lost; the points are fewer and in no lattice; or there are as many on
+    the far side, as in a cloud merged from views all around.
     """
     with np.load(path, allow_pickle=False) as held:
         depth, label, matrix = held["depth"], held["label"], held["K"]
@@ -64,6 +65,14 @@ def read_lesson(path: Path, rng: np.random.Generator) -> Lesson:
     if rng.random() < 0.6:
         kept = height > rng.uniform(0.0, 0.004)
         points, region = points[kept], region[kept]
+    if rng.random() < 0.2:
+        kept = rng.random(len(points)) < rng.uniform(0.25, 0.8)
+        points, region = points[kept], region[kept]
+    if rng.random() < 0.08:
+        middle = points.mean(axis=0)
+        ray = middle / np.linalg.norm(middle)
+        behind = points - 2 * np.outer((points - middle) @ ray - rng.uniform(0, 0.02), ray)
+        points, region = np.vstack([points, behind]), np.concatenate([region, region])
     plane = SupportPlane(
         normal=(float(normal[0]), float(normal[1]), float(normal[2])),
         offset=offset,

@@ -60,5 +60,5 @@ def holes_of(mask: NDArray[np.bool_]) -> NDArray[np.int32]:
     found, _ = ndimage.label(~mask)
     outside = np.unique(np.concatenate([found[0], found[-1], found[:, 0], found[:, -1]]))
     found[np.isin(found, outside)] = 0
-    numbers, inverse = np.unique(found, return_inverse=True)
+    _, inverse = np.unique(found, return_inverse=True)
     return np.asarray(inverse.reshape(found.shape), dtype=np.int32)

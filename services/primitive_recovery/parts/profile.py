@@ -7,8 +7,9 @@ from dataclasses import dataclass
 import numpy as np
 from numpy.typing import NDArray
 
-from shared.geometry.rotation import any_perpendicular, unit
+from services.primitive_recovery.parts.silhouette import across
 from shared.jit import kernel
+from shared.sorting import ascending
 
 Array = NDArray[np.float64]
 Indices = NDArray[np.intp]
@@ -83,18 +84,18 @@ def profile(points: Array, axis: Array, ray: Array, height: Array, spacing: floa
     spacing : float
         About how far neighbouring points are apart, metres.
     """
-    across = np.cross(axis, ray)
-    across = any_perpendicular(axis) if np.linalg.norm(across) < 1e-3 else unit(across)
-    towards = np.cross(axis, across)
+    towards, aside = across(axis, ray)
     towards = -towards if towards @ ray > 0 else towards
     along = points @ axis
-    low, high = np.quantile(along, [_ENDS, 1 - _ENDS])
+    skipped = round(_ENDS * len(along))
+    ends = np.partition(along, [skipped, len(along) - 1 - skipped])
+    low, high = ends[skipped], ends[len(along) - 1 - skipped]
     length = max(float(high - low), 1e-12)
     count = int(np.clip(length / (1.5 * spacing), _FEWEST_SLICES, SLICES))
     place = np.clip((along - low) / length, 0.0, 1.0)
     index = np.minimum((place * count).astype(np.intp), count - 1)
 
-    side, near = points @ across, points @ towards
+    side, near = points @ aside, points @ towards
     values = np.stack([side, height, near])
     number, ranges, depth = slice_ranges(values, index, count, _TRIMS)
     (left, right), (bottom, top), (far, close) = ranges
@@ -105,7 +106,7 @@ def profile(points: Array, axis: Array, ray: Array, height: Array, spacing: floa
     wanted = np.arange(SLICES) + 0.5
 
     def spread(values: Array) -> Array:
-        return np.interp(wanted, centres, values[known])
+        return np.asarray(np.interp(wanted, centres, values[known]))
 
     return Profile(
         axis=axis,
@@ -163,7 +164,7 @@ def slice_ranges(
             n = number[each]
             if n == 0:
                 continue
-            own = np.sort(held[start[each] : start[each + 1]])
+            own = ascending(held[start[each] : start[each + 1]])
             skip = int(trims[v] * n)
             ranges[v, 0, each], ranges[v, 1, each] = own[skip], own[n - 1 - skip]
             if v == len(values) - 1:

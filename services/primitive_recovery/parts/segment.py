@@ -7,8 +7,9 @@ from dataclasses import dataclass
 import numpy as np
 from numpy.typing import NDArray
 
-from services.primitive_recovery.parts.branches import branches
 from services.primitive_recovery.parts.borders import PartJoint, joints_of
+from services.primitive_recovery.parts.branches import branches
+from services.primitive_recovery.parts.coverage import coverage
 from services.primitive_recovery.parts.openings import count_holes
 from services.primitive_recovery.parts.profile import profile
 from services.primitive_recovery.parts.scorer import MODELS, Scorer
@@ -24,6 +25,17 @@ LEAST_QUALITY = 0.25
 
 LEAST_QUALITY_OF_PIECE = 0.75
 """And through a part that was cut from it: a part cut in vain spoils what was right."""
+
+LEAST_POINTS_OF_PART = 11
+"""As many as a superquadric has unknowns."""
+
+COVERAGE_WEIGHT = 2.0
+"""What it is worth, in usefulness, that the two sides cover less background than the whole,
+as a share of the object. It places a cut that the scorer finds good anywhere nearby, as on a
+bottle's shoulder."""
+
+BRANCH_MARGIN = 0.15
+"""How much better a branch must be than a cut across an axis, which has a straight border."""
 
 MOST_PARTS = 6
 
@@ -80,14 +92,16 @@ class Cutter:
             slices = profile(view.centred, axis, view.ray, view.height, view.spacing)
             quality = self.slices(np.vstack(slice_features(slices, view)))
             quality = quality.reshape(2, -1).mean(axis=0)
-            k = int(quality.argmax())
-            if quality[k] > best:
-                side, best = slices.place >= CUTS[k], float(quality[k])
+            if quality.max() > best:
+                lower, upper, whole = coverage(slices.width)
+                saved = whole - lower[CUTS] - upper[CUTS]
+                k = int((quality + COVERAGE_WEIGHT * saved).argmax())
+                side, best = slices.place >= CUTS[k], float(quality.max())
         found = branches(view)
         if found:
             quality = self.branches(np.array([each.features for each in found]))
             k = int(quality.argmax())
-            if quality[k] > best:
+            if quality[k] > best + BRANCH_MARGIN:
                 side = np.asarray(view.picture.at_points(found[k].cells), dtype=bool)
                 best = float(quality[k])
         return side, best
@@ -119,13 +133,16 @@ def segment(
             continue
         side, best = cutter.best_cut(piece)
         least = LEAST_QUALITY_OF_PIECE if piece.is_piece else LEAST_QUALITY
-        if best < least or side.all() or not side.any():
+        smaller = min(int(side.sum()), int((~side).sum()))
+        if best < least or smaller < LEAST_POINTS_OF_PART:
             continue
         quality.append(best)
         labels[rows[side]] = len(quality)
-        for kept in (rows[~side], rows[side]):
-            if len(kept) >= LEAST_POINTS:
-                waiting.append((kept, part_view(points[kept], viewpoint, plane, is_piece=True)))
+        waiting += [
+            (kept, part_view(points[kept], viewpoint, plane, is_piece=True))
+            for kept in (rows[~side], rows[side])
+            if len(kept) >= LEAST_POINTS
+        ]
     labels = _largest_first(labels)
     return Segmentation(
         labels=labels,

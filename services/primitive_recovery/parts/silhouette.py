@@ -97,13 +97,14 @@ def project(
         Direction that becomes the first axis, so that the picture turns with
         the object.
     """
-    frame = frame_from_z(ray, along)
+    x_axis, y_axis = across(ray, along)
+    frame = np.column_stack([x_axis, y_axis, ray])
     if viewpoint is None:
         return centred @ frame[:, :2], 1.0
     placed = (centred - viewpoint) @ frame
     depth = placed[:, 2]
-    across = np.linalg.norm(placed[:, :2], axis=1)
-    if (across >= STEEPEST * depth).any():
+    aside = np.sqrt(placed[:, 0] ** 2 + placed[:, 1] ** 2)
+    if (aside >= STEEPEST * depth).any():
         return centred @ frame[:, :2], 1.0
     return placed[:, :2] / depth[:, None], float(depth.mean())
 
@@ -118,3 +119,18 @@ def spacing(flat: Array) -> float:
     occupied = np.zeros(rows * columns, dtype=bool)
     occupied[cells[:, 0] * columns + cells[:, 1]] = True
     return coarse * float(np.sqrt(np.count_nonzero(occupied) / len(flat)))
+
+
+def across(axis: Array, towards: Array) -> tuple[Array, Array]:
+    """Return two unit vectors (3,) across a unit vector: the one nearest `towards`, and the other.
+
+    Where both are parallel, any two.
+    """
+    one = towards - (towards @ axis) * axis
+    length = float(np.sqrt(one @ one))
+    if length < 1e-6:
+        frame = frame_from_z(axis)
+        return frame[:, 0], frame[:, 1]
+    one = one / length
+    (a, b, c), (x, y, z) = axis, one
+    return one, np.array([b * z - c * y, c * x - a * z, a * y - b * x])

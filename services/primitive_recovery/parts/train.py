@@ -7,11 +7,13 @@ from __future__ import annotations
 
 import argparse
 import sys
+import warnings
 from dataclasses import dataclass, field
 from pathlib import Path
 
 import numpy as np
 from numpy.typing import NDArray
+from sklearn.exceptions import ConvergenceWarning
 from sklearn.neural_network import MLPRegressor
 
 from services.primitive_recovery.parts.branches import branches
@@ -21,6 +23,7 @@ from services.primitive_recovery.parts.scorer import MODELS
 from services.primitive_recovery.parts.segment import LEAST_POINTS
 from services.primitive_recovery.parts.slice_features import CUTS, slice_features
 from services.primitive_recovery.parts.view import part_view
+from shared.wire.npz import write_npz
 
 Array = NDArray[np.float64]
 
@@ -29,6 +32,9 @@ WORST, BEST = 0.4, 0.85
 
 OTHERS = 16
 """Cuts of every profile that are shown though they are useless."""
+
+ROUNDS = 40
+"""Passes over all cuts at most."""
 
 PIECES = 0.5
 """Share of the pieces that are shown."""
@@ -107,18 +113,18 @@ def fitted(rows: Rows, layers: tuple[int, ...], decay: float, seeds: range) -> d
         network = MLPRegressor(
             hidden_layer_sizes=layers,
             alpha=decay,
-            batch_size=min(1024, len(useful)),
+            batch_size=min(1024, len(useful) // 2),
             learning_rate_init=2e-3,
-            max_iter=40,
+            max_iter=ROUNDS,
             early_stopping=True,
             validation_fraction=0.05,
             n_iter_no_change=4,
             random_state=seed,
         )
-        network.fit(scaled, useful)
-        for k, (weights, bias) in enumerate(
-            zip(network.coefs_, network.intercepts_, strict=True)
-        ):
+        with warnings.catch_warnings():  # ROUNDS is where it ends, settled or not
+            warnings.simplefilter("ignore", ConvergenceWarning)
+            network.fit(scaled, useful)
+        for k, (weights, bias) in enumerate(zip(network.coefs_, network.intercepts_, strict=True)):
             held[f"weights_{n}_{k}"] = weights.astype(np.float32)
             held[f"bias_{n}_{k}"] = bias.astype(np.float32)
     return held
@@ -135,8 +141,9 @@ def train(views: Path, out: Path, seed: int, most: int | None) -> tuple[int, int
         for piece in pieces(lesson):
             if rng.random() < PIECES:
                 show(piece, slices, sticks, rng)
-    np.savez(out / "parts_slices.npz", **fitted(slices, (64, 32), 1e-4, range(seed, seed + 3)))
-    np.savez(out / "parts_branches.npz", **fitted(sticks, (32, 16), 1e-3, range(seed, seed + 3)))
+    seeds = range(seed, seed + 3)
+    (out / "parts_slices.npz").write_bytes(write_npz(fitted(slices, (64, 32), 1e-4, seeds)))
+    (out / "parts_branches.npz").write_bytes(write_npz(fitted(sticks, (32, 16), 1e-3, seeds)))
     return sum(map(len, slices.useful)), sum(map(len, sticks.useful))
 
 

@@ -106,5 +106,6 @@ def principal_axes(centred: Array) -> Array:
     the axes move with the points.
     """
     axes = np.linalg.eigh(centred.T @ centred)[1][:, ::-1].T
-    skew = ((centred @ axes.T) ** 3).sum(axis=0)
+    placed = centred @ axes.T
+    skew = np.einsum("ij,ij,ij->j", placed, placed, placed)
     return np.asarray(np.where(skew < 0, -1.0, 1.0)[:, None] * axes)

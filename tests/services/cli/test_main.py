@@ -46,7 +46,7 @@ def test_grasp_prints_the_answer_and_draws_it(environment: dict[str, str], tmp_p
         *("grasp", str(sample_path("bottle")), "--task", "Pouring", "--picture", str(picture)),
     )
     assert done.returncode == 0, done.stderr
-    for word in ("pouring (v2): hold part", "Parts", "Grasps", "Why", "thesis/version2", "Time"):
+    for word in ("pouring (v2): hold part", "Parts", "Grasps", "Why", "default/version2", "Time"):
         assert word in done.stdout
     assert picture.read_bytes().startswith(b"\x89PNG")
 

@@ -238,3 +238,13 @@ def test_parameters_of_ems_and_the_method_parts_contradict_each_other(backend: C
 def test_the_answer_says_how_the_object_was_cut(backend: Client) -> None:
     for method in ("parts", "ems"):
         assert answer(backend, method=method)["scene"]["method"] == method
+
+
+def test_a_request_may_choose_the_rules(backend: Client) -> None:
+    for rule_set in ("thesis", "default"):
+        chosen = answer(backend, rule_set=rule_set)
+        assert chosen["rule_set"] == rule_set
+        rules = [trace["rule"] for trace in chosen["explanation"]["rules"]]
+        assert any(rule.startswith(f"{rule_set}/") for rule in rules), rules
+    assert answer(backend)["rule_set"] == "default"
+    assert answer(backend)["found"]

@@ -56,6 +56,7 @@ def test_defaults_are_the_contracts() -> None:
     assert parameters.model_dump() == {
         "task": "pouring",
         "reasoning": "v2",
+        "rule_set": None,
         "input": "scene",
         "viewpoint": (0, 0, 0),
         "target": None,

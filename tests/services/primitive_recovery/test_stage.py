@@ -3,6 +3,7 @@
 from __future__ import annotations
 
 from concurrent.futures import ThreadPoolExecutor
+from typing import Any
 
 import numpy as np
 import pytest
@@ -22,6 +23,7 @@ from shared.errors import (
 from shared.schemas.primitive import (
     PRESETS,
     EmsParameters,
+    Method,
     Preset,
     RecoverRequest,
     RecoverResponse,
@@ -61,7 +63,7 @@ def assert_sound(response: RecoverResponse, points: Array) -> None:
 
 
 def test_a_can_is_a_cylinder(stage: PrimitiveRecovery, can: Array) -> None:
-    response = stage.recover(RecoverRequest(points=can))
+    response = stage.recover(RecoverRequest(points=can, method="ems"))
     assert_sound(response, can)
     (primitive,) = response.primitives
     assert primitive.shape_class == "cylinder"
@@ -89,11 +91,30 @@ def test_requests_in_several_threads_get_the_same_answer(
 
 
 def test_the_setting_is_the_default_preset(can: Array) -> None:
-    real = PrimitiveRecovery(PrimitiveRecoverySettings(preset="real_world"))
+    real = PrimitiveRecovery(PrimitiveRecoverySettings(method="ems", preset="real_world"))
     asked = PrimitiveRecovery(PrimitiveRecoverySettings())
     assert real.recover(RecoverRequest(points=can)) == asked.recover(
         RecoverRequest(points=can, preset="real_world")
     )
+
+
+@pytest.mark.parametrize(
+    ("setting", "asked", "expected"),
+    [
+        ("parts", {}, "parts"),
+        ("ems", {}, "ems"),
+        ("ems", {"method": "parts"}, "parts"),
+        ("parts", {"method": "ems"}, "ems"),
+        ("parts", {"preset": "real_world"}, "ems"),
+        ("parts", {"parameters": PRESETS["simulation"]}, "ems"),
+        ("parts", {"method": "parts", "preset": "real_world"}, "parts"),
+    ],
+)
+def test_the_method_is_the_one_asked_for(
+    setting: Method, asked: dict[str, Any], expected: Method, can: Array
+) -> None:
+    stage = PrimitiveRecovery(PrimitiveRecoverySettings(method=setting))
+    assert stage.recover(RecoverRequest(points=can, **asked)).method == expected
 
 
 def test_parameters_of_the_request_win_over_the_preset(

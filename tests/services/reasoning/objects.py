@@ -59,3 +59,14 @@ KNIFE = (
     part(0, (0.002, 0.03, 0.18), "cuboid"),
     part(1, (0.015, 0.025, 0.11), "cuboid", position=(0.0, 0.0, 0.945)),
 )
+MUG = (
+    part(0, (0.085, 0.085, 0.09)),
+    part(1, (0.03, 0.014, 0.07), "cuboid", position=(0.057, 0.0, 0.8)),
+)
+SCISSORS = (
+    part(0, (0.035, 0.006, 0.11), "cuboid"),
+    part(1, (0.11, 0.01, 0.08), position=(0.0, 0.0, 0.895)).model_copy(update={"holes": 2}),
+)
+SCREWDRIVER = (part(0, (0.006, 0.006, 0.1)), part(1, (0.03, 0.03, 0.1), position=(0.0, 0.0, 0.9)))
+CAN = (part(0, (0.066, 0.066, 0.11)),)
+CARTON = (part(0, (0.28, 0.19, 0.06), "cuboid"),)

@@ -8,6 +8,9 @@ from typing import Any
 
 import orjson
 import pytest
+from hypothesis import HealthCheck, given
+from hypothesis import settings as hypothesis_settings
+from hypothesis import strategies as st
 
 from services.reasoning.app import create_app
 from services.reasoning.settings import ReasoningSettings
@@ -93,3 +96,54 @@ def test_unusable_rules_keep_the_service_from_getting_ready(tmp_path: Path) -> N
     settings = ReasoningSettings(knowledge_dir=tmp_path)
     with pytest.raises(Exception, match="not a journal"), in_process(create_app(settings)):
         pass
+
+
+RULE = {
+    "name": "by_ratio",
+    "task": "slicing",
+    "part": "handle",
+    "conditions": [
+        {"condition": "min_ratio", "of": ["handle"], "value": 2},
+        {"condition": "different", "of": ["handle", "blade"]},
+    ],
+}
+junk = st.recursive(
+    st.one_of(
+        st.none(),
+        st.booleans(),
+        st.integers(-(2**70), 2**70),
+        st.floats(allow_nan=False, allow_infinity=False),
+        st.text(max_size=12),
+        st.sampled_from(["halt", "handle", "min_ratio", "shape", "cuboid", "grasp", "_", "'"]),
+    ),
+    lambda inner: st.one_of(
+        st.lists(inner, max_size=4), st.dictionaries(st.text(max_size=6), inner, max_size=3)
+    ),
+    max_leaves=8,
+)
+
+
+@hypothesis_settings(
+    max_examples=150,
+    deadline=None,
+    derandomize=True,
+    suppress_health_check=[HealthCheck.function_scoped_fixture],
+)
+@given(data=st.data())
+def test_whatever_is_sent_is_taken_or_refused(client: Client, data: st.DataObject) -> None:
+    """A sound rule with one thing in it replaced: never an error of ours, and nothing is left."""
+    body = orjson.loads(orjson.dumps(RULE))
+    inside = data.draw(st.sampled_from([body, body["conditions"][0], body["conditions"][1]]))
+    inside[data.draw(st.sampled_from([*inside, "task", "affordance", "prolog"]))] = data.draw(junk)
+    try:
+        content = orjson.dumps(body)
+    except orjson.JSONEncodeError:  # an integer beyond 64 bits, a lone surrogate
+        return
+    response = client.request("POST", "/rules", content=content, headers={"Content-Type": JSON})
+    assert response.status_code in (200, 409, 422), response.text
+    if response.status_code == 200:
+        gone = client.request("DELETE", f"/rules/{response.json()['name']}")
+        assert gone.json() == response.json()
+    else:
+        assert response.json()["error"]["message"]
+    assert client.request("GET", "/rules").json()["rules"] == []

@@ -4,9 +4,9 @@ from __future__ import annotations
 
 import pytest
 
-from services.reasoning.facts import facts_of
+from services.reasoning.facts import facts_of, layout_facts
 from shared.errors import InvalidInput
-from shared.schemas.primitive import Primitive
+from shared.schemas.primitive import Joint, Primitive
 from tests.services.reasoning.objects import PAN, part
 
 
@@ -18,7 +18,7 @@ def test_dimensions_are_full_extents() -> None:
     facts = facts_of(PAN, 8)
     assert facts[1]["dimensions"] == [0.02, 0.03, 0.2]
     assert facts[1]["id"] == 1
-    assert facts[1]["position"] == [0.0, 0.0, 0.8]
+    assert facts[1]["position"] == [0.19, 0.0, 0.8]
     assert facts[1]["exponents"] == [0.1, 1.0]
 
 
@@ -50,3 +50,28 @@ def test_ids_differ() -> None:
 def test_too_many() -> None:
     with pytest.raises(InvalidInput, match="too many"):
         facts_of([part(number, (0.1, 0.1, 0.1)) for number in range(9)], 8)
+
+
+def test_no_parts_lie_nowhere() -> None:
+    assert layout_facts((), (), None) is None
+
+
+def test_layout_names_parts_by_their_ids() -> None:
+    renamed = tuple(each.model_copy(update={"id": each.id + 5}) for each in PAN)
+    stated = layout_facts(renamed, (), None)
+    assert stated is not None
+    assert [each["id"] for each in stated["parts"]] == [5, 6]
+    assert sorted(pair[:2] for pair in stated["pairs"]) == [[5, 6], [6, 5]]
+    assert stated["meeting"] == [[5, 6]]
+    assert stated["length"] == pytest.approx(0.38)
+    assert sum(each["seen"] for each in stated["parts"]) == pytest.approx(1.0)
+
+
+def test_joints_of_the_recovery_decide() -> None:
+    apart = (PAN[0], part(1, (0.02, 0.03, 0.2), position=(0.5, 0.0, 0.8)))
+    joint = Joint(primitive_ids=(1, 0), position=(0.2, 0.0, 0.8))
+    without, with_joint = layout_facts(apart, (), None), layout_facts(apart, (joint,), None)
+    assert without is not None
+    assert with_joint is not None
+    assert without["meeting"] == []
+    assert with_joint["meeting"] == [[0, 1]]

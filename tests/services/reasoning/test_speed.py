@@ -86,6 +86,8 @@ def test_a_decision_takes_milliseconds_however_much_is_known(reasoner: Reasoner)
         assert report(f"{rule_set}, 7 tasks", milliseconds(reasoner.decide, TASKS, rule_set)) < 20
     learned = learn_a_lot(reasoner)
     for rule_set in RULE_SETS:
-        for tasks, versions, which in ((TASKS, VERSIONS, "shipped"), (learned, ("v2",), "learned")):
-            taken = milliseconds(reasoner.decide, tasks, rule_set, versions)
-            assert report(f"{rule_set}, 1000 tasks, 207 affordances, {which} tasks", taken) < 40
+        much = f"{rule_set}, 1000 tasks, 207 affordances"
+        shipped = milliseconds(reasoner.decide, TASKS, rule_set)
+        assert report(f"{much}, shipped tasks", shipped) < 40
+        added = milliseconds(reasoner.decide, learned, rule_set, ("v2",))
+        assert report(f"{much}, learned tasks", added) < 40

@@ -231,6 +231,20 @@ def test_affordances_cannot_ask_for_each_other_in_a_circle(reasoner: Reasoner) -
             "conditions.1.value",
             [condition("min_dimension", [0.1, 0, 0]), condition("max_dimension", [1, 0.05, 1])],
         ),
+        ("conditions.1.value", [condition("max_width", 0.01), condition("min_thickness", 0.02)]),
+        (
+            "conditions.1.value",
+            [condition("min_width", 0.05), condition("max_dimension", [1, 0.04, 1])],
+        ),
+        ("conditions.1.value", [condition("min_seen", 0.5), condition("max_seen", 0.4)]),
+        (
+            "conditions.2.value",
+            [
+                condition("min_length", 0.5),
+                condition("max_thickness", 0.05),
+                condition("max_ratio", 9),
+            ],
+        ),
         (
             "conditions.2.value",
             [
@@ -328,7 +342,7 @@ def test_every_word_can_be_used(reasoner: Reasoner) -> None:
     for word in reasoner.list_rules(Nothing()).vocabulary:
         value: object = {
             "nothing": None,
-            "number": word.low,
+            "number": word.low if word.direction == "min" else word.high,
             "lengths": [0.001, 0.001, 0.001],
             "shapes": ["cuboid"],
             "affordance": "cut",

@@ -26,13 +26,13 @@ def found() -> dict[str, Array]:
 
 def test_all_shapes_from_all_sides(found: dict[str, Array]) -> None:
     rows = found["noisy"]
-    assert np.median(rows[:, SURFACE]) < 1.5
-    assert np.median(rows[:, OVERLAP]) > 0.93
+    assert np.median(rows[:, SURFACE]) < 3.2
+    assert np.median(rows[:, OVERLAP]) > 0.87
     assert np.median(np.abs(rows[:, [SMALL, MIDDLE, LARGE]]), axis=0).max() < 8
 
 
 def test_all_shapes_from_one_view(found: dict[str, Array]) -> None:
     rows = found["one view"]
-    assert np.median(rows[:, SURFACE]) < 3.0
-    assert np.median(rows[:, OVERLAP]) > 0.6
+    assert np.median(rows[:, SURFACE]) < 3.3
+    assert np.median(rows[:, OVERLAP]) > 0.7  # `ems`: 0.45
     assert np.median(np.abs(rows[:, [SMALL, MIDDLE, LARGE]]), axis=0).max() < 20

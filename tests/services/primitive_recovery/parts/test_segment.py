@@ -38,9 +38,7 @@ def alike(one: NDArray[np.int16], other: NDArray[np.int16]) -> float:
 
 @pytest.mark.parametrize("noise", [None, StereoNoise()])
 @pytest.mark.parametrize("class_name", TWO_PARTS)
-def test_parts_are_the_regions(
-    class_name: str, noise: StereoNoise | None, cutter: Cutter
-) -> None:
+def test_parts_are_the_regions(class_name: str, noise: StereoNoise | None, cutter: Cutter) -> None:
     good = 0
     for number in range(2001, 2005):
         view = seen(class_name, number, noise)
@@ -59,11 +57,14 @@ def test_convex_objects_stay_whole(class_name: str, cutter: Cutter) -> None:
 
 
 def test_scissors_have_two_rings(cutter: Cutter) -> None:
-    view = seen("scissors", 2001)
-    found = segment(view.points, ORIGIN, view.plane, cutter)
-    handles = int(np.argmax(np.bincount(found.labels[view.region == 0])))
-    assert found.holes[handles] == 2
-    assert sum(found.holes) == 2
+    holes = []
+    for number in range(2001, 2008):
+        view = seen("scissors", number)
+        found = segment(view.points, ORIGIN, view.plane, cutter)
+        of_region = [found.labels[view.region == region] for region in (0, 1)]
+        handles, blades = (int(np.argmax(np.bincount(each))) for each in of_region)
+        holes.append((found.holes[handles], found.holes[blades]))
+    assert holes.count((2, 0)) >= 5
 
 
 def test_a_joint_lies_on_the_border(cutter: Cutter) -> None:
@@ -106,9 +107,7 @@ def test_the_order_of_the_points_does_not_matter(
 
 @pytest.mark.parametrize("scale", [0.01, 0.5, 2.0, 1000.0])
 @pytest.mark.parametrize("class_name", ["hammer", "mug", "bottle", "box"])
-def test_the_unit_of_length_does_not_matter(
-    class_name: str, scale: float, cutter: Cutter
-) -> None:
+def test_the_unit_of_length_does_not_matter(class_name: str, scale: float, cutter: Cutter) -> None:
     view = seen(class_name, 2004)
     plane = plane_of(np.array(view.plane.normal), scale * view.plane.offset)
     before = segment(view.points, ORIGIN, view.plane, cutter).labels
@@ -131,9 +130,7 @@ def test_doubling_the_density_changes_little(
 
 
 @pytest.mark.parametrize("sigma", [0.0, 0.002, 0.01, 0.05, 0.5])
-def test_more_noise_never_crashes(
-    sigma: float, cutter: Cutter, rng: np.random.Generator
-) -> None:
+def test_more_noise_never_crashes(sigma: float, cutter: Cutter, rng: np.random.Generator) -> None:
     view = seen("hammer", 2001)
     noisy = view.points + rng.normal(0, sigma, view.points.shape)
     for plane in (view.plane, None):
@@ -146,7 +143,9 @@ def test_the_same_input_gives_the_same_bytes(cutter: Cutter) -> None:
     view = seen("mug", 2001)
     one, other = (segment(view.points, ORIGIN, view.plane, cutter) for _ in range(2))
     assert one.labels.tobytes() == other.labels.tobytes()
-    assert [j.position.tobytes() for j in one.joints] == [j.position.tobytes() for j in other.joints]
+    assert [j.position.tobytes() for j in one.joints] == [
+        j.position.tobytes() for j in other.joints
+    ]
 
 
 def cloud_of_both_sides(view: Seen) -> Array:
@@ -154,9 +153,7 @@ def cloud_of_both_sides(view: Seen) -> Array:
 
 
 @pytest.mark.parametrize("viewpoint", ["origin", "inside", "on a point", "far"])
-def test_clouds_without_a_sensible_viewpoint(
-    viewpoint: str, cutter: Cutter
-) -> None:
+def test_clouds_without_a_sensible_viewpoint(viewpoint: str, cutter: Cutter) -> None:
     view = seen("hammer", 2001)
     cloud = cloud_of_both_sides(view)
     eye = {

@@ -18,7 +18,7 @@ def sheet(turn: float, pitch: float = 0.002) -> Array:
     x, y = (each.ravel() for each in np.meshgrid(side, side))
     c, s = np.cos(turn), np.sin(turn)
     placed = np.column_stack([c * x - s * y, s * x + c * y, np.ones_like(x)])
-    return placed[np.hypot(x, y) < 0.1]
+    return np.asarray(placed[np.hypot(x, y) < 0.1])
 
 
 def picture_of(points: Array) -> PartView:

@@ -34,9 +34,7 @@ def seen(class_name: str, number: int, noise: StereoNoise | None = None) -> Seen
     row, column = np.nonzero(view.on_object)
     z = view.depth[row, column] * 1e-4
     k = view.intrinsics
-    points = np.column_stack(
-        [(column - k[0, 2]) / k[0, 0] * z, (row - k[1, 2]) / k[1, 1] * z, z]
-    )
+    points = np.column_stack([(column - k[0, 2]) / k[0, 0] * z, (row - k[1, 2]) / k[1, 1] * z, z])
     masks = view.regions[:, row, column]
     region = np.where(masks.any(axis=0), masks.argmax(axis=0), len(masks))
     normal = view.camera_from_world[:3, 2]

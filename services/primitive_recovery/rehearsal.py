@@ -1,0 +1,33 @@
+"""Clouds that between them take every way through the kernels, for a warm start."""
+
+from __future__ import annotations
+
+from collections.abc import Iterator
+
+import numpy as np
+
+from shared.schemas.primitive import RecoverRequest
+from shared.schemas.scene import SupportPlane
+
+_POINTS = 600
+
+
+def rehearsal() -> Iterator[RecoverRequest]:
+    """Return requests after which every kernel has been compiled."""
+    rng = np.random.default_rng(0)
+    directions = rng.normal(size=(_POINTS, 3))
+    ball = 0.03 * directions / np.linalg.norm(directions, axis=1, keepdims=True)
+    rod = rng.uniform(-1.0, 1.0, (_POINTS, 3)) * np.array([0.005, 0.005, 0.1])
+    ball_and_rod = np.vstack([ball, rod + np.array([0.0, 0.0, 0.13])])
+    for method in ("ems", "parts"):
+        yield RecoverRequest(points=ball_and_rod, method=method, viewpoint=(1.0, 0.0, 0.0))
+    # The near side of a cone that stands on a table: a part with a taper.
+    angle, height = rng.uniform(-1.4, 1.4, _POINTS), rng.uniform(0.0, 0.2, _POINTS)
+    radius = 0.08 - 0.35 * height
+    cone = np.column_stack([radius * np.cos(angle), radius * np.sin(angle), height])
+    yield RecoverRequest(
+        points=cone + rng.normal(scale=2e-4, size=cone.shape),
+        method="parts",
+        viewpoint=(1.0, 0.0, 0.4),
+        plane=SupportPlane(normal=(0.0, 0.0, 1.0), offset=0.0, inliers=1000, residual_mm=0.2),
+    )
