@@ -5,11 +5,12 @@ from __future__ import annotations
 from collections.abc import Sequence
 
 from experiments.extension.lesson import AFTER, BEFORE, BUILT_IN, REMOVED, Taught
-from experiments.extension.teaching import Lesson, Took
+from experiments.extension.teaching import CUT, Lesson, Took
 from experiments.framework import Plot, Share, Table
 from experiments.framework.asking import VERSION_NAMES, VERSIONS
 from experiments.framework.cells import Cell
 from experiments.framework.plots import new_figure, share_bars
+from shared.schemas.rule import RuleDefinition
 
 _COLOURS = ("#9A9A9A", "#2F6DB5", "#A9C7E8", "#C4C4C4", "#D9792B", "#F0B98A")
 """Before, after and built in, of Version 1 and then of Version 2."""
@@ -60,16 +61,19 @@ def _answer(known: Share) -> str:
 def steps(lesson: Lesson, outcomes: Sequence[Taught], took: Took) -> Table:
     """Return what had to be done for each version."""
     task = lesson.task
-    rules = (
-        f"{len(lesson.rules)} rules with {' and '.join(str(len(r.conditions)) for r in lesson.rules)} "
-        f"conditions on {' and '.join(sorted({str(_parts(r)) for r in lesson.rules}))} parts each"
+    conditions = " and ".join(str(len(rule.conditions)) for rule in lesson.rules)
+    parts = " and ".join(sorted({str(_parts(rule)) for rule in lesson.rules}))
+    rules = f"{len(lesson.rules)} rules with {conditions} conditions on {parts} parts each"
+    requires, grasp, avoids = (
+        _listed([CUT if name == lesson.affordance.name else name for name in names])
+        for names in (task.requires, task.grasp, task.avoids)
     )
     by_rule = f"{rules}, one POST /rules each (the structure of Code 6.1)"
     relations = (
-        f"the affordance {lesson.affordance.name} with {rules} in one POST /affordances (Code 6.3), "
-        f"and {len(task.requires) + len(task.grasp) + len(task.avoids)} relations in one "
-        f"POST /tasks: requires {_listed(task.requires)}; grasp {_listed(task.grasp)}; "
-        f"avoids {_listed(task.avoids)}. The affordance to grasp is used again"
+        f"a new affordance {CUT} with {rules}, in one POST /affordances (Code 6.3); "
+        f"{len(task.requires) + len(task.grasp) + len(task.avoids)} relations in one POST /tasks: "
+        f"requires {requires}; grasp {grasp}; avoids {avoids}. The affordance to grasp is used "
+        "again"
     )
     return Table(
         "steps",

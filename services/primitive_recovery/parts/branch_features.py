@@ -15,6 +15,9 @@ from shared.jit import kernel
 Array = NDArray[np.float64]
 Mask = NDArray[np.bool_]
 
+ENCLOSES = 13
+"""The feature that tells whether background shows between branch and body."""
+
 _SMALLEST = 0.08
 """Variance of a cell's own extent, about, in cells squared."""
 

@@ -8,7 +8,7 @@ import numpy as np
 from numpy.typing import NDArray
 from scipy import ndimage
 
-from services.primitive_recovery.parts.branch_features import branch_features
+from services.primitive_recovery.parts.branch_features import ENCLOSES, branch_features
 from services.primitive_recovery.parts.grid import (
     cell_means,
     distance_to_unset,
@@ -67,10 +67,13 @@ class Branch:
         Part of the silhouette's (closed) mask.
     features : (F,) array
         Free of scale and of the picture's rotation.
+    encloses : bool
+        Whether background shows between it and the body.
     """
 
     cells: Mask
     features: Array
+    encloses: bool
 
 
 def branches(view: PartView) -> list[Branch]:
@@ -126,7 +129,7 @@ def branches(view: PartView) -> list[Branch]:
             seen.append(cells)
             row = branch_features(mask, cells, distance, holes, hole_sizes, near, tall)
             about = [share, float(kind == "depth"), float(view.is_piece), whole]
-            found.append(Branch(cells, np.concatenate([about, row])))
+            found.append(Branch(cells, np.concatenate([about, row]), bool(row[ENCLOSES] > 0)))
     return found
 
 

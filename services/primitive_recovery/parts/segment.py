@@ -20,8 +20,8 @@ from shared.schemas.scene import SupportPlane
 Array = NDArray[np.float64]
 Mask = NDArray[np.bool_]
 
-LEAST_QUALITY = 0.25
-"""Usefulness of a cut that is made through an object."""
+LEAST_QUALITY = 0.35
+"""What must speak for a cut through an object."""
 
 LEAST_QUALITY_OF_PIECE = 0.75
 """And through a part that was cut from it: a part cut in vain spoils what was right."""
@@ -34,8 +34,11 @@ COVERAGE_WEIGHT = 2.0
 as a share of the object. It places a cut that the scorer finds good anywhere nearby, as on a
 bottle's shoulder."""
 
-BRANCH_MARGIN = 0.15
-"""How much better a branch must be than a cut across an axis, which has a straight border."""
+BRANCH_MARGIN = 0.1
+"""How much better a branch must be than a cut across an axis."""
+SAME_CUT, SAME_MARGIN = 0.5, 0.5
+"""And where both cut off much the same (IoU), nothing enclosed between branch and body: there
+the border across the axis is the better placed one."""
 
 MOST_PARTS = 6
 
@@ -56,7 +59,7 @@ class Segmentation:
     joints : tuple of PartJoint
         Which parts meet, and where.
     quality : tuple of float
-        What the scorer thought of each cut, in the order they were made.
+        What spoke for each cut, in the order they were made.
     """
 
     labels: NDArray[np.int16]
@@ -86,25 +89,38 @@ class Cutter:
         )
 
     def best_cut(self, view: PartView) -> tuple[Mask, float]:
-        """Return the points (N,) on one side of the best cut, and its quality."""
-        side, best = np.zeros(len(view.points), dtype=bool), -np.inf
+        """Return the points (N,) on one side of the best cut, and what speaks for it.
+
+        Across an axis the scorer says whether there is a border, and together
+        with the background that the two sides no longer cover, where it is.
+        """
+        side, best, worth = np.zeros(len(view.points), dtype=bool), -np.inf, -np.inf
         for axis in view.axes[:2]:
             slices = profile(view.centred, axis, view.ray, view.height, view.spacing)
             quality = self.slices(np.vstack(slice_features(slices, view)))
             quality = quality.reshape(2, -1).mean(axis=0)
             if quality.max() > best:
                 lower, upper, whole = coverage(slices.width)
-                saved = whole - lower[CUTS] - upper[CUTS]
-                k = int((quality + COVERAGE_WEIGHT * saved).argmax())
+                saved = COVERAGE_WEIGHT * (whole - lower[CUTS] - upper[CUTS])
+                k = int((quality + saved).argmax())
                 side, best = slices.place >= CUTS[k], float(quality.max())
+                worth = best + max(float(saved[k]), 0.0)
         found = branches(view)
-        if found:
-            quality = self.branches(np.array([each.features for each in found]))
-            k = int(quality.argmax())
-            if quality[k] > best + BRANCH_MARGIN:
-                side = np.asarray(view.picture.at_points(found[k].cells), dtype=bool)
-                best = float(quality[k])
-        return side, best
+        if not found:
+            return side, worth
+        quality = self.branches(np.array([each.features for each in found]))
+        k = int(quality.argmax())
+        branch = np.asarray(view.picture.at_points(found[k].cells), dtype=bool)
+        same = _agreement(side, branch) > SAME_CUT and not found[k].encloses
+        if quality[k] > best + (SAME_MARGIN if same else BRANCH_MARGIN):
+            return branch, float(quality[k])
+        return side, worth
+
+
+def _agreement(one: Mask, other: Mask) -> float:
+    """Return the IoU of the smaller sides of two cuts."""
+    small = [side if 2 * side.sum() < len(side) else ~side for side in (one, other)]
+    return float((small[0] & small[1]).sum() / max((small[0] | small[1]).sum(), 1))
 
 
 def segment(
