@@ -57,18 +57,22 @@ task_decision(RuleSet, Task, Decision) :-
     rule_module(RuleSet, v1, Module),
     findall(ID-Trace, proof(Module, affordTask(ID, Task), Trace), Proofs),
     (   Proofs == []
-    ->  findall(Attempt, attempt(Module, affordTask(_, Task), Attempt), Attempts),
-        nearest_or_null(Attempts, Miss),
+    ->  closest_or_null(Module, [affordTask(_, Task)], Miss),
         nothing(no_part_matches, Nothing),
         Decision = Nothing.put(miss, Miss)
     ;   most_certain_each(Proofs, Best),
         ranked(Best, [ID1-Trace1|Others]),
         maplist(region_of_proof, [ID1-Trace1|Others], Singles),
-        (   Others = [_|_],
+        pairs_keys([ID1-Trace1|Others], IDs),
+        findall(Tool, acting(Best, IDs, Tool), Tools),
+        companions(Module, IDs, Tools, Companions),
+        append(Others, Companions, More),
+        (   More = [_|_],
             held_together(RuleSet, v1, Task)
-        ->  together(Singles, Together),
+        ->  maplist(region_of_proof, [ID1-Trace1|More], All),
+            together(All, Together),
             Regions = [Together|Singles],
-            pairs_values([ID1-Trace1|Others], Traces)
+            pairs_values([ID1-Trace1|More], Traces)
         ;   Regions = Singles,
             Traces = [Trace1]
         ),
@@ -78,6 +82,26 @@ task_decision(RuleSet, Task, Decision) :-
 
 region_of_proof(ID-Trace, region{parts: [ID], affordance: null, confidence: Certainty}) :-
     Certainty = Trace.certainty.
+
+%   A part that a proof puts in another role.
+
+acting(Proofs, IDs, Tool) :-
+    member(_-Trace, Proofs),
+    dict_pairs(Trace.bindings, _, Pairs),
+    member(_-Tool, Pairs),
+    \+ memberchk(Tool, IDs).
+
+%   Parts that go with those in IDs and are not among Excluded: ID-Trace, the most
+%   certain trace for each.
+
+companions(Module, IDs, Excluded, Companions) :-
+    findall(ID-Trace,
+            ( member(Other, IDs),
+              proof(Module, goes_with(ID, Other), Trace),
+              \+ memberchk(ID, IDs),
+              \+ memberchk(ID, Excluded) ),
+            Proofs),
+    most_certain_each(Proofs, Companions).
 
 %   All parts as one region, as certain as the least certain of them.
 
@@ -115,9 +139,9 @@ pair_uncertainty(_-Trace, Uncertainty) :-
 uncertainty(Trace, Uncertainty) :-
     Uncertainty is 1 - Trace.certainty.
 
-nearest_or_null(Attempts, Miss) :-
-    (   nearest(Attempts, Nearest)
-    ->  Miss = Nearest
+closest_or_null(Module, Heads, Miss) :-
+    (   closest(Module, Heads, Closest)
+    ->  Miss = Closest
     ;   Miss = null
     ).
 
@@ -182,11 +206,8 @@ best_of(Labelled, Affordance, provided(Affordance, ID, Trace)) :-
     ranked(Parts, [ID-Trace|_]).
 
 closest_to_label(Module, Affordances, Miss) :-
-    findall(Attempt,
-            ( member(Affordance, Affordances),
-              attempt(Module, partAffordance(_, Affordance), Attempt) ),
-            Attempts),
-    nearest_or_null(Attempts, Miss).
+    findall(partAffordance(_, Affordance), member(Affordance, Affordances), Heads),
+    closest_or_null(Module, Heads, Miss).
 
 %   What may be held: a part with a grasp affordance, or any part if the task names
 %   none; and no part with an affordance to avoid.
@@ -240,18 +261,37 @@ found(RuleSet, Module, Task, _, Avoided, Provided, Grips, Decision) :-
               option(Module, Task, Avoided, Provided, [ID], Affordance, Traces, Region, Relation) ),
             Options),
     best_regions(Options, Best),
-    (   Best = [_, _|_],
+    findall(ID, ( member(Single-_, Best), member(ID, Single.parts) ), IDs),
+    findall(ID, not_a_companion(Module, Avoided, Provided, IDs, ID), Excluded),
+    companions(Module, IDs, Excluded, Companions),
+    append(Best, Companions, Held),
+    (   Held = [_, _|_],
         held_together(RuleSet, v2, Task)
-    ->  all_together(Module, Task, Avoided, Provided, Best, [Region-option(Relation, Traces)|Others])
+    ->  all_together(Module, Task, Avoided, Provided, Best, Companions,
+                     [Region-option(Relation, Traces)|Others])
     ;   Best = [Region-option(Relation, Traces)|Others]
     ),
     pairs_keys(Others, Alternatives),
     decided(Provided, Traces, [Region|Alternatives], Relation, Decision).
 
-all_together(Module, Task, Avoided, Provided, Best, [Region-option(Relation, Traces)|Best]) :-
-    findall(ID, ( member(Single-_, Best), member(ID, Single.parts) ), IDs0),
+%   What the task needs elsewhere or avoids is not held for the sake of a companion.
+
+not_a_companion(_, _, Provided, IDs, ID) :-
+    member(provided(_, ID, _), Provided),
+    \+ memberchk(ID, IDs).
+not_a_companion(Module, Avoided, _, _, ID) :-
+    member(Affordance, Avoided),
+    proof(Module, partAffordance(ID, Affordance), _).
+
+all_together(Module, Task, Avoided, Provided, Best, Companions,
+             [Region-option(Relation, Traces)|Best]) :-
+    findall(ID, ( member(Single-_, Best), member(ID, Single.parts) ), Own),
+    pairs_keys(Companions, Further),
+    append(Own, Further, IDs0),
     sort(IDs0, IDs),
-    findall(Trace, ( member(_-option(_, Each), Best), member(Trace, Each) ), Traces),
+    findall(Trace, ( member(_-option(_, Each), Best), member(Trace, Each) ), OwnTraces),
+    pairs_values(Companions, FurtherTraces),
+    append(OwnTraces, FurtherTraces, Traces),
     Best = [First-_|_],
     option(Module, Task, Avoided, Provided, IDs, First.affordance, Traces, Region, Relation).
 
@@ -349,8 +389,7 @@ relation_condition(Property, Task, Affordance, ID, Condition) :-
 %   A part that lacks Affordance: what failed most clearly says by how much.
 
 left_free(Module, Task, Affordance, ID, Condition) :-
-    findall(Attempt, attempt(Module, partAffordance(ID, Affordance), Attempt), Attempts),
-    (   nearest(Attempts, Nearest)
+    (   closest(Module, [partAffordance(ID, Affordance)], Nearest)
     ->  Freedom is 1 - Nearest.certainty,
         failing(Nearest.conditions, Failing),
         extreme(excess, Failing, Because),

@@ -91,6 +91,21 @@ test(pieces_together, [setup(pan_with_a_handle_in_two_pieces), cleanup(wipe),
     default(Version, cooking, D),
     parts_of(D, [First|Singles]),
     msort(Singles, [[1], [2]]).
+%   The inner half of a haft is none by itself; it goes with the outer half.
+
+knife_with_a_haft_in_two_pieces :-
+    sketch([ box([0, 0, 0.01], [0.19, 0.04, 0.004], [shape(cuboid)]),
+             box([0.125, 0, 0.01], [0.06, 0.026, 0.018], []),
+             box([0.185, 0, 0.01], [0.06, 0.026, 0.018], []) ]).
+
+test(what_goes_with_a_part_is_held_with_it,
+     [setup(knife_with_a_haft_in_two_pieces), cleanup(wipe),
+      forall(member(Version, [v1, v2])), true(Parts == [[1, 2], [2]])]) :-
+    default(Version, cutting, D), parts_of(D, Parts).
+test(and_handed_over_with_it,
+     [setup(knife_with_a_haft_in_two_pieces), cleanup(wipe),
+      forall(member(Version, [v1, v2])), true(First == [0])]) :-
+    default(Version, handover, D), parts_of(D, [First|_]).
 test(together_is_as_sure_as_the_least_sure,
      [setup(pan_with_a_handle_in_two_pieces), cleanup(wipe), true(Whole =:= Least)]) :-
     default(v1, cooking, D),

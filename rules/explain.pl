@@ -27,6 +27,7 @@
             holds_for_part/2,           % +Module, ?Head
             proof/3,                    % +Module, ?Head, -Trace
             attempt/3,                  % +Module, ?Head, -Trace
+            closest/3,                  % +Module, +Heads, -Nearest
             nearest/2,                  % +Traces, -Nearest
             certainty/2,                % +Conditions, -Certainty
             with_memory/1,              % :Goal
@@ -42,7 +43,7 @@
 :- use_module(library(pairs)).
 
 :- dynamic prepared/6.          % Module, Head, Steps, Parts, Title, Line
-:- dynamic remembering/0, remembered/4. % Module, Goal, Holds, Denied
+:- dynamic remembering/0, remembered/2. % Question, Answer
 :- meta_predicate with_memory(0).
 :- dynamic defined_beside/3.    % Module, General, Other: a goal whose rules lie in Other
 
@@ -77,7 +78,9 @@ prepare_rule(Module, Title, Head, Body, Ref) :-
     variable_names(Ref, Module, Head, Body, Names, Line),
     owners(Body, Owners, []),
     steps(Body, Module, Owners, Names, Steps, []),
-    part_variables(Owners, Names, Parts),
+    entered_variables(Steps, Entered),
+    append(Owners, Entered, AllOwners),
+    part_variables(AllOwners, Names, Parts),
     assertz(prepared(Module, Head, Steps, Parts, Title, Line)).
 
 %   The names of a clause's variables are only in its source.
@@ -138,6 +141,20 @@ part_variable(Owners, Name = Variable, Parts, Tail) :-
     ->  Parts = [Name-ID|Tail]
     ;   Parts = Tail
     ).
+
+%   A named variable of a goal that is entered may stand for a part as well; whether it
+%   does shows when it is bound.
+
+entered_variables([], []).
+entered_variables([Step|Steps], Owners) :-
+    (   Step = enter(Goal)
+    ->  term_variables(Goal, Variables),
+        foldl(owns_itself, Variables, Owners, Rest)
+    ;   Owners = Rest
+    ),
+    entered_variables(Steps, Rest).
+
+owns_itself(Variable, [owner(Variable, Variable)|Owners], Owners).
 
 %   Steps of a body: find(Goal), enter(Goal), deny(Goal, ID, Text), test(Goal, ID, Text).
 
@@ -321,11 +338,14 @@ step_holds(test(Goal, _, _), Module) :- call(Module:Goal).
 
 %!  proof(+Module, ?Head, -Trace) is nondet.
 %
-%   Head, a part and what it is for, holds by a rule of Module; Trace is a dict with the rule, the parts it
-%   was proved on and every condition.
+%   Head, a part and what it is for, holds by a rule of Module; Trace is a dict with
+%   the rule, the parts it was proved on and every condition. What was measured is
+%   worked out only when the rule has been proved.
 
 proof(Module, Head, Trace) :-
-    tried(Module, Head, strictly, true, Trace).
+    rule(Module, Head, Steps, Parts, Title, In),
+    run(Steps, strictly, In, Tried, []),
+    traced(Head, Tried, Parts, Title, Trace).
 
 %!  attempt(+Module, ?Head, -Trace) is nondet.
 %
@@ -333,11 +353,15 @@ proof(Module, Head, Trace) :-
 %   not.
 
 attempt(Module, Head, Trace) :-
-    tried(Module, Head, softly, _, Trace).
+    without_bound(tried_softly(Module, Head, Tried, Parts, Title)),
+    traced(Head, Tried, Parts, Title, Trace).
 
-tried(Module, Head, Manner, Holds, Trace) :-
+tried_softly(Module, Head, Tried, Parts, Title) :-
     rule(Module, Head, Steps, Parts, Title, In),
-    run(Steps, Manner, In, Conditions, []),
+    run(Steps, softly, In, Tried, []).
+
+traced(Head, Tried, Parts, Title, Trace) :-
+    maplist(condition, Tried, Conditions),
     (   exclude(holds, Conditions, []) -> Holds = true ; Holds = false ),
     subject(Head, Part, Subject),
     atomic_list_concat([Title, :, Subject], Rule),
@@ -346,6 +370,46 @@ tried(Module, Head, Manner, Holds, Trace) :-
     certainty(Conditions, Certainty),
     Trace = trace{rule: Rule, part: Part, holds: Holds, bindings: Bindings, conditions: Conditions,
                   certainty: Certainty}.
+
+%!  closest(+Module, +Heads, -Nearest) is semidet.
+%
+%   The nearest (nearest/2) of all attempts at Heads. An attempt is given up as soon
+%   as it is farther off than the nearest one so far.
+
+closest(Module, Heads, Nearest) :-
+    Best = best(none, none),
+    (   member(Head, Heads),
+        b_setval(explain_best, Best),
+        b_setval(explain_distance, distance(0, 0, 0.0)),
+        tried_softly(Module, Head, Tried, Parts, Title),
+        b_getval(explain_distance, Distance),
+        arg(1, Best, Least),
+        (   Least == none -> true ; Distance @< Least ),
+        nb_setarg(1, Best, Distance),
+        nb_setarg(2, Best, found(Head, Tried, Parts, Title)),
+        fail
+    ;   true
+    ),
+    arg(2, Best, found(Head, Tried, Parts, Title)),
+    traced(Head, Tried, Parts, Title, Nearest).
+
+%   Attempts that are not a search for the nearest one know no bound.
+
+without_bound(Goal) :-
+    b_setval(explain_best, best(none, none)),
+    b_setval(explain_distance, distance(0, 0, 0.0)),
+    call(Goal).
+
+farther(Condition) :-
+    b_getval(explain_distance, distance(Same0, Failing0, Excess0)),
+    (   about_distinctness(Condition) -> Same is Same0 + 1 ; Same = Same0 ),
+    Failing is Failing0 + 1,
+    Excess is Excess0 + Condition.excess,
+    Distance = distance(Same, Failing, Excess),
+    b_getval(explain_best, Best),
+    arg(1, Best, Least),
+    (   Least == none -> true ; Distance @=< Least ),
+    b_setval(explain_distance, Distance).
 
 %   What a rule is about: affordTask(ID, Task) about Task, handle(ID) about handle.
 
@@ -366,38 +430,57 @@ holds(Condition) :-
 bound_part(_-ID) :-
     integer(ID).
 
-run([], _, _, Conditions, Conditions).
-run([Step|Steps], Manner, Module, Conditions, Tail) :-
-    step(Step, Manner, Module, Conditions, Middle),
+%   Each step that is a condition gives tried(Step, Module, Holds, Condition);
+%   Condition is worked out at once only for one that fails.
+
+run([], _, _, Tried, Tried).
+run([Step|Steps], Manner, Module, Tried, Tail) :-
+    step(Step, Manner, Module, Tried, Middle),
     run(Steps, Manner, Module, Middle, Tail).
 
-step(find(Goal), _, Module, Conditions, Conditions) :-
+step(find(Goal), _, Module, Tried, Tried) :-
     call(Module:Goal).
-step(enter(Goal), Manner, Module, Conditions, Tail) :-
+step(enter(Goal), Manner, Module, Tried, Tail) :-
     rule(Module, Goal, Steps, _, _, In),
-    run(Steps, Manner, In, Conditions, Tail).
-step(deny(Goal, ID, Text), Manner, Module, [Condition|Tail], Tail) :-
-    denied(Module, Goal, Holds, Denied),
-    (   Manner == strictly
-    ->  Holds == true
-    ;   true
+    run(Steps, Manner, In, Tried, Tail).
+step(deny(Goal, ID, Text), Manner, Module, [Tried|Tail], Tail) :-
+    (   provable(Module, Goal)
+    ->  Manner == softly,
+        Holds = false
+    ;   Holds = true
     ),
-    denied_part(ID, Goal, Part),
-    Condition = Denied.put(_{predicate: Text, part: Part, holds: Holds}).
-step(test(Goal, ID, Text), strictly, Module, [Condition|Tail], Tail) :-
-    call(Module:Goal),
-    condition(Goal, ID, Text, true, Condition).
-step(test(Goal, ID, Text), softly, Module, [Condition|Tail], Tail) :-
+    settled(tried(deny(Goal, ID, Text), Module, Holds, _), Tried).
+step(test(Goal, ID, Text), strictly, Module, [tried(test(Goal, ID, Text), Module, true, _)|T], T) :-
+    call(Module:Goal).
+step(test(Goal, ID, Text), softly, Module, [Tried|Tail], Tail) :-
     (   catch(Module:Goal, error(instantiation_error, _), fail)
     *-> Holds = true
     ;   Holds = false
     ),
-    condition(Goal, ID, Text, Holds, Condition).
+    settled(tried(test(Goal, ID, Text), Module, Holds, _), Tried).
 
-condition(Goal, ID, Text, Holds, Condition) :-
+settled(Tried, Tried) :-
+    Tried = tried(_, _, Holds, _),
+    (   Holds == true
+    ->  true
+    ;   condition(Tried, Condition),
+        farther(Condition)
+    ).
+
+condition(tried(Step, Module, Holds, Condition), Condition) :-
+    (   nonvar(Condition)
+    ->  true
+    ;   worked_out(Step, Module, Holds, Condition)
+    ).
+
+worked_out(test(Goal, ID, Text), _, Holds, Condition) :-
     measurement(Goal, ID, Measurement),
     (   integer(ID) -> Part = ID ; goal_part(Goal, Part) -> true ; Part = null ),
     Condition = Measurement.put(_{predicate: Text, part: Part, holds: Holds}).
+worked_out(deny(Goal, ID, Text), Module, Holds, Condition) :-
+    denied(Module, Goal, Holds, Denied),
+    denied_part(ID, Goal, Part),
+    Condition = Denied.put(_{predicate: Text, part: Part, holds: Holds}).
 
 goal_part(at_least(Quantity, _), ID) :- quantity_part(Quantity, ID).
 goal_part(at_most(Quantity, _), ID) :- quantity_part(Quantity, ID).
@@ -408,15 +491,18 @@ goal_part(meets(ID, _), ID) :- integer(ID).
 %   decides.
 
 denied(Module, Goal, Holds, Denied) :-
-    (   remembering
-    ->  (   remembered(Module, Asked, Holds0, Denied0),
-            Asked =@= Goal
-        ->  Holds = Holds0, Denied = Denied0
-        ;   denied_now(Module, Goal, Holds, Denied),
-            assertz(remembered(Module, Goal, Holds, Denied))
-        )
-    ;   denied_now(Module, Goal, Holds, Denied)
-    ).
+    remember(denied(Module, Goal), Denied, denied_now(Module, Goal, Holds, Denied)).
+
+%   Whether Goal holds by a rule, without working out why.
+
+provable(Module, Goal) :-
+    remember(provable(Module, Goal), Answer,
+             (   rule(Module, Goal, Steps, _, _, In),
+                 run(Steps, strictly, In, _, [])
+             ->  Answer = yes
+             ;   Answer = no
+             )),
+    Answer == yes.
 
 %!  with_memory(:Goal) is semidet.
 %
@@ -427,23 +513,34 @@ with_memory(Goal) :-
     setup_call_cleanup(
         assertz(remembering),
         once(Goal),
-        ( retractall(remembering), retractall(remembered(_, _, _, _)) )).
+        ( retractall(remembering), retractall(remembered(_, _)) )).
+
+%   Questions that differ only in the names of variables are the same.
+
+remember(Question, Answer, Goal) :-
+    (   remembering
+    ->  copy_term(Question, Key),
+        numbervars(Key, 0, _),
+        (   remembered(Key, Known)
+        ->  Answer = Known
+        ;   once(Goal),
+            assertz(remembered(Key, Answer))
+        )
+    ;   once(Goal)
+    ).
 
 denied_now(Module, Goal, Holds, Denied) :-
-    findall(Doubt-Trace,
-            ( proof(Module, Goal, Trace), Doubt is 1 - Trace.certainty ),
-            Proofs),
-    (   Proofs == []
-    ->  Holds = true,
-        findall(Trace, attempt(Module, Goal, Trace), Attempts),
-        (   nearest(Attempts, Nearest)
+    (   Holds == true
+    ->  (   closest(Module, [Goal], Nearest)
         ->  Support is 1 - Nearest.certainty,
             failing(Nearest.conditions, Failing),
             extreme(excess, Failing, Because)
         ;   Support = 1.0, Because = null
         ),
         Excess = 0.0, Sign = 1
-    ;   Holds = false,
+    ;   findall(Doubt-Trace,
+                ( proof(Module, Goal, Trace), Doubt is 1 - Trace.certainty ),
+                Proofs),
         keysort(Proofs, [Support-Surest|_]),
         (   extreme(doubt, Surest.conditions, Because)
         ->  true

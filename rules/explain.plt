@@ -102,6 +102,19 @@ test(denials_are_remembered_for_one_goal_only, [setup(pan), true(Then-Now == [0]
     with_memory(findall(ID, proof(odd_rules, affordTask(ID, refusing), _), Then)),
     object([[0.02, 0.03, 0.2]-cylinder, [0.18, 0.18, 0.06]-cylinder]),
     with_memory(findall(ID, proof(odd_rules, affordTask(ID, refusing), _), Now)).
+test(closest_is_the_nearest_of_all_attempts, [setup(set_random(seed(11))), forall(between(1, 60, _))]) :-
+    random_object,
+    forall(member(Module:Heads, [ thesis_version1:[affordTask(_, _)],
+                                  thesis_version1:[affordTask(_, cooking), affordTask(_, pouring)],
+                                  thesis_version2:[partAffordance(0, _)],
+                                  odd_rules:[affordTask(_, refusing)],
+                                  odd_rules:[affordTask(_, helping)] ]),
+           ( findall(T, ( member(Head, Heads), attempt(Module, Head, T) ), Attempts),
+             nearest(Attempts, Nearest),
+             closest(Module, Heads, Closest),
+             assertion(Nearest == Closest) )).
+test(closest_of_none, fail) :-
+    closest(odd_rules, [affordTask(_, unheard_of)], _).
 test(memory_changes_nothing, [setup(set_random(seed(9))), forall(between(1, 30, _))]) :-
     random_object,
     findall(ID, proof(odd_rules, affordTask(ID, refusing), _), Plain),

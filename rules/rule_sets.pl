@@ -9,6 +9,8 @@
 
         held_together(Task)     all the parts that may be held for Task are one
                                 region; without it each is a region of its own
+        goes_with(ID, Other)    part ID is held where Other is held (Version 2: unless
+                                Task avoids it)
         held_if_alone(Task)     (Version 2) parts that Task avoids are held all
                                 the same when the object offers nothing else
 */

@@ -26,7 +26,8 @@
             rings/2,                    % ?ID, ?Tool
             ear/2,                      % ?ID, ?Tool
             body/1,                     % ?ID
-            taken_in_use/1              % ?ID
+            taken_in_use/1,             % ?ID
+            belongs_to/2                % ?ID, ?Other
           ]).
 :- use_module('../predicates').
 :- use_module('../quantities').
@@ -168,19 +169,31 @@ body(ID) :-
 %
 %   The part that a person takes to use the object.
 
-taken_in_use(ID) :- handle(ID, _).
-taken_in_use(ID) :- body(ID).
-taken_in_use(ID) :- fragment(ID).
-
-%   Hardly seen, and touching a handle or a body: it goes with that.
-
-fragment(ID) :-
-    part(ID),
-    at_most(seen(ID), 0.006),
-    part(Other),
-    ID \= Other,
-    meets(ID, Other),
+taken_in_use(ID) :- handle_or_body(ID).
+taken_in_use(ID) :-
+    belongs_to(ID, Other),
     handle_or_body(Other).
 
 handle_or_body(ID) :- handle(ID, _).
 handle_or_body(ID) :- body(ID).
+
+%!  belongs_to(?ID, ?Other) is nondet.
+%
+%   Part ID touches part Other and is a piece of the same: as wide and as thick, or
+%   hardly seen.
+
+belongs_to(ID, Other) :-
+    part(ID),
+    part(Other),
+    ID \= Other,
+    meets(ID, Other),
+    at_least(across(ID) / across(Other), 0.85),
+    at_most(across(ID) / across(Other), 1.18),
+    at_least(thickness(ID) / thickness(Other), 0.75),
+    at_most(thickness(ID) / thickness(Other), 1.33).
+belongs_to(ID, Other) :-
+    part(ID),
+    at_most(seen(ID), 0.006),
+    part(Other),
+    ID \= Other,
+    meets(ID, Other).

@@ -72,6 +72,13 @@ test(hardly_seen, fail) :-
     stem(_, _).
 
 test(taken_in_use, all(ID == [1])) :- on_table(mug), distinct(ID, taken_in_use(ID)).
+test(pieces_of_one_thing, all(Pair == [0-1, 1-0])) :-
+    sketch([ box([0, 0, 0], [0.1, 0.07, 0.07], []), box([0.1, 0, 0], [0.1, 0.065, 0.07], []),
+             box([0.17, 0, 0], [0.04, 0.03, 0.03], []) ]),
+    belongs_to(ID, Other), Pair = ID-Other.
+test(apart_they_are_two_things, fail) :-
+    sketch([ box([0, 0, 0], [0.1, 0.07, 0.07], []), box([0.2, 0, 0], [0.08, 0.065, 0.07], []) ]),
+    belongs_to(_, _).
 test(a_fragment_goes_with_the_body, all(ID == [0, 1])) :-
     sketch([ box([0, 0, 0.055], [0.066, 0.066, 0.11], [seen(1000)]),
              box([0.036, 0, 0.05], [0.004, 0.01, 0.03], [seen(3)]) ]),

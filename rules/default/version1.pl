@@ -5,10 +5,17 @@
     known is in handles.pl, for it is the same whatever the handle is used for.
 */
 
-:- module(default_version1, [affordTask/2, held_together/1]).
+:- module(default_version1, [affordTask/2, goes_with/2, held_together/1]).
 :- use_module('../predicates').
 :- use_module('../quantities').
 :- use_module(handles).
+
+%!  goes_with(?ID, ?Other) is nondet.
+%
+%   Whoever may hold Other may hold part ID: a piece of the same handle or body.
+
+goes_with(ID, Other) :-
+    belongs_to(ID, Other).
 
 %!  held_together(?Task) is nondet.
 %

@@ -12,10 +12,17 @@
       that carries them: the same block is no hammer without one.
 */
 
-:- module(default_version2, [partAffordance/2, held_together/1, held_if_alone/1]).
+:- module(default_version2, [partAffordance/2, goes_with/2, held_together/1, held_if_alone/1]).
 :- use_module('../predicates').
 :- use_module('../quantities').
 :- use_module(handles).
+
+%!  goes_with(?ID, ?Other) is nondet.
+%
+%   Whoever may hold Other may hold part ID: a piece of the same handle or body.
+
+goes_with(ID, Other) :-
+    belongs_to(ID, Other).
 
 %!  held_together(?Task) is nondet.
 %

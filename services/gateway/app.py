@@ -18,10 +18,12 @@ from services.gateway import answer
 from services.gateway import request as requests
 from services.gateway.knowledge import DOCUMENTED as KNOWLEDGE_ROUTES
 from services.gateway.knowledge import serve_knowledge
+from services.gateway.memory import Memory
 from services.gateway.openapi import describe_grasp, describe_knowledge
 from services.gateway.pipeline import Pipeline
 from services.gateway.settings import STAGES, GatewaySettings
 from shared.errors import InvalidInput, UnsupportedMediaType
+from shared.schemas.answer import EXPLANATION, KeptExplanation, RequestName
 from shared.schemas.execution import EXECUTE
 from shared.schemas.grasp import LIST_GRIPPERS
 from shared.schemas.knowledge import ASK_QUESTION, LIST_QUESTIONS
@@ -85,6 +87,7 @@ def create_app(
     clients = _connect(settings, transports or {})
     stages = {name: StageClient(name, http) for name, http in clients.items()}
     pipeline = Pipeline(stages, settings)
+    memory = Memory(settings.kept_explanations, settings.keep_explanations_s)
 
     @asynccontextmanager
     async def lifespan(_: FastAPI) -> AsyncIterator[None]:
@@ -130,15 +133,20 @@ def create_app(
             "total": 1e3 * (time.perf_counter() - started),
         }
         composed = answer.compose(outcome, parsed, settings, request_id.get(), timings_ms)
+        memory.keep(composed)
         if NPZ in request.headers.get("accept", JSON):
             body = await run_in_threadpool(answer.to_npz, composed, outcome)
             return Response(body, media_type=NPZ)
         return Response(composed.model_dump_json(), media_type=JSON)
 
+    async def explanation(asked: RequestName) -> KeptExplanation:
+        return memory.recall(asked.request_id)
+
+    serve(app, EXPLANATION, explanation, settings)
     for route in _PASSED_ON:
         serve(app, route, _forward(stages[route.service], route, settings), settings)
     serve_knowledge(app, stages["reasoning"], settings)
-    describe(app, (*_PASSED_ON, *KNOWLEDGE_ROUTES))
+    describe(app, (EXPLANATION, *_PASSED_ON, *KNOWLEDGE_ROUTES))
     describe_knowledge(app)
     describe_grasp(app)
     return app

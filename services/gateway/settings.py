@@ -38,6 +38,8 @@ class GatewaySettings(ServiceSettings):
     rule_set : str
         Which rules decide where a request does not say: `default`, or `thesis` for
         those that were published.
+    kept_explanations, keep_explanations_s : int, float
+        GET /grasp/{request_id}/explanation knows so many of the latest, for so long.
     approach_distance, retreat_distance : float
         Of the pregrasp and the retreat from the grasp, in metres.
     """
@@ -56,6 +58,8 @@ class GatewaySettings(ServiceSettings):
     samples: int = Field(default=300, ge=1, le=5000)
     preset: Preset | None = None
     rule_set: RuleSet = "default"
+    kept_explanations: int = Field(default=256, ge=0)
+    keep_explanations_s: float = Field(default=3600.0, gt=0)
     approach_distance: float = Field(default=0.10, gt=0)
     retreat_distance: float = Field(default=0.10, gt=0)
 

@@ -34,6 +34,8 @@ class PerceptionSettings(ServiceSettings):
         Points closer than this belong together; never finer than three point spacings.
     hidden_gap_m : float
         A minor cluster this close belongs to a larger one that hides what joins them.
+    hidden_bar_m : float
+        A slender cluster that a larger one's shadow cuts off goes on this far to meet it.
     min_object_points, min_object_extent_m : int, float
         A smaller cluster is a speck.
     max_object_extent_m : float
@@ -58,6 +60,7 @@ class PerceptionSettings(ServiceSettings):
     point_sigmas: float = Field(default=2.5, gt=0)
     cluster_gap_m: float = Field(default=0.012, gt=0)
     hidden_gap_m: float = Field(default=0.06, gt=0)
+    hidden_bar_m: float = Field(default=0.12, gt=0)
     min_object_points: int = Field(default=30, ge=1)
     min_object_extent_m: float = Field(default=0.015, gt=0)
     max_object_extent_m: float = Field(default=0.6, gt=0)

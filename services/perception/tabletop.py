@@ -108,14 +108,19 @@ def _furniture(
     standing: Mask,
     settings: PerceptionSettings,
 ) -> Mask:
-    """Tell which standing points belong to a plane too long for an object, such as a wall."""
+    """Tell which standing points belong to a plane too long for an object, such as a wall.
+
+    It must be long in what stands: any object is in one plane with the table's edge.
+    """
     furniture = np.zeros(len(points), dtype=bool)
     rows = np.flatnonzero(standing)
     for other in others:
         if other.length <= settings.max_object_extent_m or _same_surface(plane, other):
             continue
         near = rows[np.abs(other.heights(points[rows])) < settings.plane_tolerance_m]
-        furniture[near[other.carries(points[near], _RIM_M)]] = True
+        near = near[other.carries(points[near], _RIM_M)]
+        reach = np.ptp(points[near] @ other.basis, axis=0).max() if len(near) else 0.0
+        furniture[near] |= reach > settings.max_object_extent_m
     return furniture
 
 

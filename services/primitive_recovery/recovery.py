@@ -8,8 +8,8 @@ from numpy.typing import NDArray
 from services.primitive_recovery.classify import ShapeClassifier
 from services.primitive_recovery.ems.hierarchy import Part, decompose
 from services.primitive_recovery.ems.overlap import kept_after_overlap
+from services.primitive_recovery.parts.cutter import Cutter
 from services.primitive_recovery.parts.recovery import recover_parts
-from services.primitive_recovery.parts.segment import Cutter
 from services.primitive_recovery.rehearsal import rehearsal
 from services.primitive_recovery.settings import PrimitiveRecoverySettings
 from services.primitive_recovery.validation import checked_cloud

@@ -2,6 +2,7 @@
 
 from __future__ import annotations
 
+from services.reasoning.archive import Archive
 from services.reasoning.knowledge import Knowledge
 from services.reasoning.questions import Questions, bindings_of, object_with
 from services.reasoning.settings import ReasoningSettings
@@ -22,10 +23,13 @@ class Enquiry:
     ----------
     settings : ReasoningSettings
     knowledge : Knowledge
+    archive : Archive
+        The same, as a graph.
     """
 
-    def __init__(self, settings: ReasoningSettings, knowledge: Knowledge) -> None:
+    def __init__(self, settings: ReasoningSettings, knowledge: Knowledge, archive: Archive) -> None:
         self._knowledge = knowledge
+        self._archive = archive
         self._questions = Questions(settings.ontology_file.parent / "questions")
         self._sparql = Sparql(settings.sparql_timeout_s, settings.max_rows)
 
@@ -35,7 +39,7 @@ class Enquiry:
 
     def query(self, asked: SparqlQuery) -> SparqlAnswer:
         """Answer a SPARQL query; see `Sparql.ask`."""
-        return self._sparql.ask(asked.query, self._knowledge.version(), self._knowledge.graph)
+        return self._sparql.ask(asked.query, self._archive.version(), self._archive.graph)
 
     def questions(self) -> QuestionList:
         """Return the questions of the ontology."""
@@ -56,8 +60,8 @@ class Enquiry:
         affordances = [affordance.name for affordance in self._knowledge.affordances()]
         answer = self._sparql.ask(
             query,
-            self._knowledge.version(),
-            self._knowledge.graph,
+            self._archive.version(),
+            self._archive.graph,
             object_with(asked.parts, affordances),
             bindings_of(question, asked, tasks, affordances),
         )

@@ -2,19 +2,12 @@
 
 from __future__ import annotations
 
-import contextlib
-from collections.abc import Iterator
-
-from rdflib import Graph
-
 from services.reasoning.admission import require_known
-from services.reasoning.change import Change, Learned
+from services.reasoning.change import Change
 from services.reasoning.definition import listed
-from services.reasoning.exchange import graph_of, read_document
 from services.reasoning.memory import Memory
 from services.reasoning.shipped import Shipped
 from shared.errors import Conflict, NotFound, UnknownTask
-from shared.schemas.knowledge import KnowledgeDocument, KnowledgeImport, KnowledgeImported
 from shared.schemas.rule import AffordanceDefinition, Rule, RuleDefinition, RuleList, Word
 from shared.schemas.task import Affordance, RuleSet, Task, TaskDefinition, Version
 
@@ -35,9 +28,6 @@ class Knowledge:
         self._memory = memory
         self._shipped = shipped
         self._words = words
-        self._affordance_words = frozenset(
-            word.name for word in words if word.takes == "affordance"
-        )
 
     @property
     def name(self) -> str:
@@ -60,7 +50,7 @@ class Knowledge:
 
     def tasks(self) -> tuple[Task, ...]:
         """Return every task, by name, with the versions that know it."""
-        with self._reading() as learned:
+        with self._memory.reading() as learned:
             ruled = learned.tasks_with_rules()
             known = {name: TaskDefinition(name=name) for name in self._shipped.ruled_tasks | ruled}
             known |= {**self._shipped.tasks, **learned.tasks}
@@ -68,13 +58,13 @@ class Knowledge:
 
     def affordances(self) -> tuple[Affordance, ...]:
         """Return every affordance, by name."""
-        with self._reading() as learned:
+        with self._memory.reading() as learned:
             known = {**self._shipped.affordances, **learned.affordances}
             return tuple(known[name] for name in sorted(known))
 
     def rules(self) -> RuleList:
         """Return the learned rules by name, and the words to write further ones."""
-        with self._reading() as learned:
+        with self._memory.reading() as learned:
             clauses = self._memory.clauses()
             rules = [
                 Rule(**dict(learned.rules[name]), prolog=clauses[name])
@@ -95,7 +85,7 @@ class Knowledge:
             It cannot be stored.
         """
         (admitted,) = self._memory.change(Change(tasks=(definition,))).tasks
-        with self._reading() as learned:
+        with self._memory.reading() as learned:
             return self._task(admitted, learned.tasks_with_rules())
 
     def delete_task(self, name: str) -> Task:
@@ -110,7 +100,7 @@ class Knowledge:
         StageUnavailable
             It cannot be removed from the store.
         """
-        with self._reading() as learned:
+        with self._memory.reading() as learned:
             if name in self._shipped.task_names:
                 raise _is_shipped("task", name)
             gone = learned.tasks.get(name)
@@ -154,7 +144,7 @@ class Knowledge:
         Conflict
             It is part of the shipped knowledge, or a task or a rule asks for it.
         """
-        with self._reading() as learned:
+        with self._memory.reading() as learned:
             if name in self._shipped.affordances:
                 raise _is_shipped("affordance", name)
             require_known([name], learned.affordances, "affordance")
@@ -189,58 +179,16 @@ class Knowledge:
         Conflict
             It is the last rule of an affordance.
         """
-        with self._reading() as learned:
+        with self._memory.reading() as learned:
             require_known([name], learned.rules, "rule")
             gone = self._rule(learned.rules[name])
         self._memory.change(Change(forget_rules=(name,)))
         return gone
 
-    def graph(self) -> Graph:
-        """Return all that is known as one ontology."""
-        with self._reading() as learned:
-            copy = learned.after(Change())
-        return graph_of(self._shipped, copy, self._affordance_words)
-
-    def version(self) -> int:
-        """Return another number after every change."""
-        with self._reading():
-            return self._memory.version
-
-    def export(self) -> KnowledgeDocument:
-        """Return all that is known as Turtle."""
-        return KnowledgeDocument(turtle=self.graph().serialize(format="turtle"))
-
-    def take_over(self, wanted: KnowledgeImport) -> KnowledgeImported:
-        """Learn what a document holds: all of it, or nothing.
-
-        What is known already and the same is passed over.
-
-        Raises
-        ------
-        InvalidInput
-            It is not Turtle, or something in it cannot be used; see `add_task`,
-            `add_rule`.
-        Conflict
-            It does not agree with what is shipped, or, unless it replaces what was
-            learned, with that.
-        """
-        document = read_document(wanted.turtle, self._shipped, self._affordance_words)
-        change = document.change.model_copy(update={"clear": wanted.replace})
-        with self._reading() as learned:
-            if not wanted.replace:
-                change = _without_known(change, learned)
-        self._memory.change(change)
-        return KnowledgeImported(
-            tasks=tuple(each.name for each in change.tasks),
-            affordances=tuple(each.name for each in change.affordances),
-            rules=tuple(each.name for each in change.rules),
-            ignored=document.ignored,
-        )
-
     def unknown(self, asked: str, version: Version, rule_set: RuleSet) -> UnknownTask:
         """Return the error for a task that `version` does not know."""
         tasks = self.tasks()
-        with self._reading() as learned:
+        with self._memory.reading() as learned:
             ruled = {*self._shipped.rule_sets[rule_set].tasks, *learned.tasks_with_rules()}
         by_version: dict[Version, list[str]] = {
             "v1": sorted(ruled),
@@ -265,13 +213,6 @@ class Knowledge:
             known_to=others,
         )
 
-    @contextlib.contextmanager
-    def _reading(self) -> Iterator[Learned]:
-        """Give what was learned, as it is now, while nobody changes it."""
-        with self._memory.lock:
-            self._memory.refresh()
-            yield self._memory.learned
-
     def _rule(self, definition: RuleDefinition) -> Rule:
         clauses = self._memory.clauses(definition.name)
         return Rule(**dict(definition), prolog=clauses.get(definition.name, ""))  # just forgotten
@@ -287,19 +228,6 @@ class Knowledge:
             reasoning=tuple(versions),
             builtin=name in self._shipped.task_names,
         )
-
-
-def _without_known(change: Change, learned: Learned) -> Change:
-    """Return `change` without what is learned already just as it says."""
-    return change.model_copy(
-        update={
-            "tasks": tuple(e for e in change.tasks if learned.tasks.get(e.name) != e),
-            "affordances": tuple(
-                e for e in change.affordances if learned.affordances.get(e.name) != e
-            ),
-            "rules": tuple(e for e in change.rules if learned.rules.get(e.name) != e),
-        }
-    )
 
 
 def _is_shipped(kind: str, name: str) -> Conflict:

@@ -2,8 +2,10 @@
 
 from __future__ import annotations
 
+import contextlib
 import itertools
 import threading
+from collections.abc import Iterator
 
 from services.reasoning.admission import Admission
 from services.reasoning.change import Change, Learned
@@ -116,6 +118,13 @@ class Memory:
             else:
                 self._tell(admitted)
         return admitted
+
+    @contextlib.contextmanager
+    def reading(self) -> Iterator[Learned]:
+        """Give what was learned, as it is now, while nobody changes it."""
+        with self.lock:
+            self.refresh()
+            yield self.learned
 
     def clauses(self, *names: str) -> JsonObject:
         """Return learned rules as Prolog text, by name; all of them when none is named."""

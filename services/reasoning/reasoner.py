@@ -3,9 +3,11 @@
 from __future__ import annotations
 
 import threading
+from dataclasses import dataclass
 from typing import get_args
 
 from services.reasoning.admission import Admission
+from services.reasoning.archive import Archive
 from services.reasoning.enquiry import Enquiry
 from services.reasoning.explanation import explain_found, explain_miss
 from services.reasoning.facts import facts_of, layout_facts
@@ -53,6 +55,16 @@ from shared.schemas.task import (
 )
 
 
+@dataclass(frozen=True)
+class Warm:
+    """What a reasoner works with once it is warm."""
+
+    engine: Prolog
+    knowledge: Knowledge
+    archive: Archive
+    enquiry: Enquiry
+
+
 class Reasoner:
     """Answers the routes of reasoning; safe to call from several threads.
 
@@ -64,8 +76,7 @@ class Reasoner:
     def __init__(self, settings: ReasoningSettings) -> None:
         self._settings = settings
         self._lock = threading.Lock()
-        self._ready: tuple[Prolog, Knowledge] | None = None
-        self._enquiry: Enquiry | None = None
+        self._ready: Warm | None = None
 
     def warm_up(self) -> None:
         """Start Prolog, load the rules, the ontology and the added tasks; once.
@@ -82,11 +93,9 @@ class Reasoner:
     def close(self) -> None:
         """Forget this reasoner's knowledge; the process keeps its Prolog."""
         with self._lock:
-            if self._enquiry is not None:
-                self._enquiry.close()
-                self._enquiry = None
             if self._ready is not None:
-                self._ready[1].close()
+                self._ready.enquiry.close()
+                self._ready.knowledge.close()
                 self._ready = None
 
     def decide(self, request: DecideRequest) -> DecideResponse:
@@ -101,7 +110,8 @@ class Reasoner:
         DeadlineExceeded
             Prolog came to no end.
         """
-        engine, knowledge = self._warm()
+        warm = self._warm()
+        engine, knowledge = warm.engine, warm.knowledge
         knowledge.refresh()
         decision = engine.ask(
             "decide",
@@ -120,76 +130,69 @@ class Reasoner:
 
     def list_tasks(self, _: Nothing) -> TaskList:
         """Return every task that is known."""
-        return TaskList(tasks=self._warm()[1].tasks())
+        return TaskList(tasks=self._warm().knowledge.tasks())
 
     def add_task(self, definition: TaskDefinition) -> Task:
         """Add a Version 2 task; see `Knowledge.add_task`."""
-        return self._warm()[1].add_task(definition)
+        return self._warm().knowledge.add_task(definition)
 
     def delete_task(self, task: TaskName) -> Task:
         """Delete an added task; see `Knowledge.delete_task`."""
-        return self._warm()[1].delete_task(task.name)
+        return self._warm().knowledge.delete_task(task.name)
 
     def list_affordances(self, _: Nothing) -> AffordanceList:
         """Return every part affordance."""
-        return AffordanceList(affordances=self._warm()[1].affordances())
+        return AffordanceList(affordances=self._warm().knowledge.affordances())
 
     def add_affordance(self, definition: AffordanceDefinition) -> Affordance:
         """Add an affordance with its rules; see `Knowledge.add_affordance`."""
-        return self._warm()[1].add_affordance(definition)
+        return self._warm().knowledge.add_affordance(definition)
 
     def delete_affordance(self, affordance: AffordanceName) -> Affordance:
         """Delete an added affordance; see `Knowledge.delete_affordance`."""
-        return self._warm()[1].delete_affordance(affordance.name)
+        return self._warm().knowledge.delete_affordance(affordance.name)
 
     def list_rules(self, _: Nothing) -> RuleList:
         """Return the taught rules and the vocabulary."""
-        return self._warm()[1].rules()
+        return self._warm().knowledge.rules()
 
     def add_rule(self, definition: RuleDefinition) -> Rule:
         """Teach a rule; see `Knowledge.add_rule`."""
-        return self._warm()[1].add_rule(definition)
+        return self._warm().knowledge.add_rule(definition)
 
     def delete_rule(self, rule: RuleName) -> Rule:
         """Forget a taught rule; see `Knowledge.delete_rule`."""
-        return self._warm()[1].delete_rule(rule.name)
+        return self._warm().knowledge.delete_rule(rule.name)
 
     def export_knowledge(self, _: Nothing) -> KnowledgeDocument:
         """Return all that is known as Turtle."""
-        return self._warm()[1].export()
+        return self._warm().archive.export()
 
     def import_knowledge(self, wanted: KnowledgeImport) -> KnowledgeImported:
-        """Learn from a Turtle document; see `Knowledge.take_over`."""
-        return self._warm()[1].take_over(wanted)
+        """Learn from a Turtle document; see `Archive.take_over`."""
+        return self._warm().archive.take_over(wanted)
 
     def query_knowledge(self, asked: SparqlQuery) -> SparqlAnswer:
         """Answer a SPARQL query; see `Enquiry.query`."""
-        return self._enquiring().query(asked)
+        return self._warm().enquiry.query(asked)
 
     def list_questions(self, _: Nothing) -> QuestionList:
         """Return the questions of the ontology."""
-        return self._enquiring().questions()
+        return self._warm().enquiry.questions()
 
     def ask_question(self, asked: AskQuestion) -> QuestionAnswer:
         """Answer one of them; see `Enquiry.ask`."""
-        return self._enquiring().ask(asked)
+        return self._warm().enquiry.ask(asked)
 
-    def _enquiring(self) -> Enquiry:
-        self._warm()
-        assert self._enquiry is not None
-        return self._enquiry
-
-    def _warm(self) -> tuple[Prolog, Knowledge]:
+    def _warm(self) -> Warm:
         with self._lock:
             if self._ready is None:
                 engine = prolog(self._settings.rules_dir)
-                knowledge = _knowledge(self._settings, engine)
-                self._enquiry = Enquiry(self._settings, knowledge)
-                self._ready = engine, knowledge
+                self._ready = _warm(self._settings, engine)
             return self._ready
 
 
-def _knowledge(settings: ReasoningSettings, engine: Prolog) -> Knowledge:
+def _warm(settings: ReasoningSettings, engine: Prolog) -> Warm:
     rule_sets: dict[RuleSet, RuleFiles] = {
         rule_set: RuleFiles(
             **engine.ask("load", directory=str(engine.rules_dir), rule_set=rule_set)
@@ -199,7 +202,9 @@ def _knowledge(settings: ReasoningSettings, engine: Prolog) -> Knowledge:
     shipped = read_shipped(settings.ontology_file, rule_sets)
     words = tuple(Word.model_validate(word) for word in engine.ask("vocabulary")["words"])
     admission = Admission(shipped, {word.name: word for word in words}, settings.max_learned)
-    return Knowledge(Memory(settings, engine, admission), shipped, words)
+    memory = Memory(settings, engine, admission)
+    knowledge, archive = Knowledge(memory, shipped, words), Archive(memory, shipped, words)
+    return Warm(engine, knowledge, archive, Enquiry(settings, knowledge, archive))
 
 
 def _response(request: DecideRequest, decision: JsonObject) -> DecideResponse:

@@ -86,14 +86,15 @@ class Sparql:
             process = self._running()
             is_new = version != self._graph_version
             text = graph().serialize(format="nt") if is_new else None
+            limit = self._timeout_s + (len(text) / 1e6 if text else 0)  # to read a megabyte: 1 s
             asked = {
+                "limit_s": limit,
                 "graph": text,
                 "query": query,
                 "facts": (facts or Graph()).serialize(format="nt"),
                 "bindings": dict(bindings or {}),
                 "max_rows": self._max_rows,
             }
-            limit = self._timeout_s + (len(text) / 1e6 if text else 0)  # to read a megabyte: 1 s
             reply = self._exchange(process, asked, limit)
             self._graph_version = version
         finally:

@@ -117,6 +117,12 @@ def _limit(kind: str) -> str:
     return "at least" if kind.startswith("at_least") else "at most"
 
 
+def _told_apart(value: float, bound: float) -> str:
+    """Return `value` in as few significant digits as tell it from `bound`."""
+    texts = [(f"{value:.{digits}g}", f"{bound:.{digits}g}") for digits in (2, 3, 4, 6, 9)]
+    return next((text for text, other in texts if text != other), texts[-1][0])
+
+
 def _quantity_wish(condition: JsonObject, who: str) -> str:
     """Return `it were 4 mm thinner (27 mm where at most 23 mm is asked)` or the like."""
     kind, quantity, unit = condition["kind"], condition["quantity"], condition["unit"]
@@ -129,6 +135,6 @@ def _quantity_wish(condition: JsonObject, who: str) -> str:
         return f"{who} were {by} {word} ({value} mm where {asked} is asked)"
     value = value_text(found, unit)
     if value == value_text(required, unit):
-        value = apart(found, required)
+        value = _told_apart(found, required)
     whose = "its" if who == "it" else f"{who}'s"
     return f"{named(quantity, whose)} were {asked} (it is {value})"

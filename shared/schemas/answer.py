@@ -9,6 +9,7 @@ from pydantic import Field
 from shared.schemas.fields import Direction
 from shared.schemas.grasp import Pose
 from shared.schemas.primitive import Method, Primitive
+from shared.schemas.route import Route
 from shared.schemas.scene import SupportPlane
 from shared.schemas.task import Explanation, Reason, Region, Version
 from shared.wire import Message
@@ -69,3 +70,33 @@ class GraspAnswer(Message):
     explanation: Explanation | None
     scene: Scene
     timings_ms: dict[str, float]
+
+
+class KeptExplanation(Message):
+    """Why an earlier answer was as it was."""
+
+    request_id: str
+    task: str
+    reasoning: Version
+    rule_set: str
+    found: bool
+    reason: Reason | None
+    region: Region | None
+    alternatives: tuple[Region, ...]
+    explanation: Explanation
+
+
+class RequestName(Message):
+    """Which request is meant."""
+
+    request_id: Annotated[str, Field(min_length=1, max_length=128)]
+
+
+EXPLANATION = Route(
+    "gateway",
+    "/grasp/{request_id}/explanation",
+    RequestName,
+    KeptExplanation,
+    "Why an earlier request was answered as it was",
+    "GET",
+)

@@ -22,7 +22,6 @@ _SMALLEST = 0.08
 """Variance of a cell's own extent, about, in cells squared."""
 
 
-@kernel
 def branch_features(
     mask: Mask,
     cells: Mask,
@@ -55,6 +54,34 @@ def branch_features(
     rest = mask & ~cells
     sums, touched = branch_sums(cells, rest, holes, len(hole_sizes) - 1, near, tall)
     away = distance_to_unset(~rest)
+    solid = np.array([solidity(rest), solidity(cells)])
+    return branch_row(mask, cells, distance, away, hole_sizes, sums, touched, solid)
+
+
+@kernel
+def branch_row(
+    mask: Mask,
+    cells: Mask,
+    distance: Array,
+    away: Array,
+    hole_sizes: NDArray[np.int64],
+    sums: Array,
+    touched: NDArray[np.bool_],
+    solid: Array,
+) -> Array:
+    """Return the features (31,), given what other kernels measured.
+
+    Parameters
+    ----------
+    mask, cells, distance, hole_sizes
+        As in `branch_features`.
+    away : (H, W) array
+        Distance of the cells from the rest.
+    sums, touched
+        As `branch_sums` returns them.
+    solid : (2,) array
+        Solidity of the rest and of the branch.
+    """
     thick, bulk, reach, far = 0.0, 1.0, 0.0, 0.0
     for i in range(mask.shape[0]):
         for j in range(mask.shape[1]):
@@ -91,8 +118,8 @@ def branch_features(
             reach / size,
             reach / (2 * thick),
             far / own / size,
-            solidity(rest),
-            solidity(cells),
+            solid[0],
+            solid[1],
             hole_sizes[1:].sum() / area,
             between / area,
             1.0 if between > 0 else 0.0,

@@ -7,7 +7,8 @@ from numpy.typing import NDArray
 
 from services.primitive_recovery.classify import ShapeClassifier
 from services.primitive_recovery.fitting import fit_part
-from services.primitive_recovery.parts.segment import Cutter, segment
+from services.primitive_recovery.parts.cutter import Cutter
+from services.primitive_recovery.parts.segment import segment
 from shared.schemas.primitive import Joint, Primitive, RecoverRequest, RecoverResponse
 
 Array = NDArray[np.float64]

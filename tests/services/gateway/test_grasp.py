@@ -248,3 +248,17 @@ def test_a_request_may_choose_the_rules(backend: Client) -> None:
         assert any(rule.startswith(f"{rule_set}/") for rule in rules), rules
     assert answer(backend)["rule_set"] == "default"
     assert answer(backend)["found"]
+
+
+def test_the_explanation_can_be_asked_for_afterwards(backend: Client) -> None:
+    given = answer(backend)
+    kept = backend.request("GET", f"/grasp/{given['request_id']}/explanation")
+    assert kept.status_code == 200
+    for field in ("request_id", "task", "found", "region", "explanation"):
+        assert kept.json()[field] == given[field]
+    unknown = backend.request("GET", "/grasp/nobody/explanation")
+    assert unknown.status_code == 404
+    assert unknown.json()["error"]["code"] == "not_found"
+    silent = answer(backend, explain="false")
+    missing = backend.request("GET", f"/grasp/{silent['request_id']}/explanation")
+    assert missing.status_code == 404

@@ -139,6 +139,19 @@ def test_a_handle_hidden_behind_its_pan_belongs_to_it(stage: Perception) -> None
     assert overlap(found, shot.pixels("pan"))[1] > 0.95
 
 
+@pytest.mark.parametrize(("start", "joined"), [(0.03, True), (0.15, False)])
+def test_a_long_handle_cut_off_by_the_bowl_before_it_belongs_to_it(
+    stage: Perception, start: float, joined: bool
+) -> None:
+    """A ladle on the table shows bowl and handle far apart; with its end in sight, a spoon."""
+    ladle = Stage().table().cylinder("bowl", 0.04, 0.07, (0, 0, 0))
+    shot = ladle.box("handle", (0.2, 0.02, 0.008), (start + 0.1, 0, 0.003)).shoot()
+    answer = stage.perceive(shot.request())
+    assert answer.clusters == (1 if joined else 2)
+    found = mask(shot, answer)
+    assert (overlap(found, shot.pixels("bowl", "handle"))[0] > 0.95) == joined
+
+
 def test_a_can_in_front_of_a_box_is_not_joined_to_it(stage: Perception) -> None:
     pair = Stage().table().cylinder("can", 0.03, 0.1, (-0.06, 0, 0))
     shot = pair.box("box", (0.06, 0.09, 0.15), (0.1, 0.04, 0)).shoot()

@@ -39,10 +39,11 @@ def test_processes_that_start_together_share_an_empty_cache(tmp_path: Path) -> N
         runs = [one.result() for one in [pool.submit(start) for _ in range(2)]]
     for run in (*runs, start()):
         assert run.returncode == 0, run.stderr
-        # One combination of types each, or processes could overwrite each other's entries.
-        # What only kernels of the same file call is compiled with them, in their order.
+        # At most one combination of types each, or processes could overwrite each other's
+        # entries. (None: it was loaded within a caller. What only kernels of the same file
+        # call is compiled with them, in their order.)
         types = json.loads(run.stdout)
         shared = {name: n for name, n in types.items() if not name.split(".")[-1].startswith("_")}
-        assert {name: n for name, n in shared.items() if n != 1} == {}
+        assert {name: n for name, n in shared.items() if n > 1} == {}
         assert len(types) > 20
     assert any(tmp_path.rglob("*.nbi"))

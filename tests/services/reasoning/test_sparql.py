@@ -3,8 +3,11 @@
 from __future__ import annotations
 
 import itertools
+import json
 import os
 import signal
+import subprocess
+import sys
 import time
 from collections.abc import Iterator
 from concurrent.futures import ThreadPoolExecutor
@@ -20,6 +23,7 @@ from shared.errors import DeadlineExceeded, InternalError, InvalidInput, NotFoun
 from shared.schemas.knowledge import AskQuestion, SparqlAnswer, SparqlQuery
 from shared.schemas.route import Nothing
 from shared.schemas.task import DecideRequest, TaskDefinition, TaskName
+from shared.settings import PROJECT_ROOT
 from tests.services.reasoning.objects import BOTTLE, HAMMER, KNIFE, LADLE, PAN, TURNER
 from tests.services.reasoning.test_taught_rules import affordance, rule
 
@@ -156,19 +160,31 @@ def test_deciding_goes_on_while_a_query_runs(hasty: Reasoner) -> None:
 
 def test_a_process_that_is_killed_is_started_again(asked: Reasoner) -> None:
     assert query(asked, "ASK { :pouring a :Task }").boolean is True
-    assert asked._enquiry is not None
-    process = asked._enquiry._sparql._process
+    process = asked._warm().enquiry._sparql._process
     assert process is not None
     os.kill(process.pid, signal.SIGKILL)
     process.wait()
     assert query(asked, "ASK { :pouring a :Task }").boolean is True
 
 
+def test_a_process_whose_asker_is_gone_ends_by_itself() -> None:
+    worker = subprocess.Popen(
+        [sys.executable, "-m", "services.reasoning.sparql_worker"],
+        stdin=subprocess.PIPE,
+        stdout=subprocess.DEVNULL,
+        cwd=PROJECT_ROOT,
+    )
+    asked = {"limit_s": 0, "graph": "", "query": ENDLESS[1], "facts": "", "bindings": {}}
+    assert worker.stdin is not None
+    worker.stdin.write(json.dumps({**asked, "max_rows": 1}).encode() + b"\n")
+    worker.stdin.close()
+    assert worker.wait(timeout=30) == -signal.SIGALRM
+
+
 def test_closing_ends_the_process(settings: ReasoningSettings) -> None:
     reasoner = Reasoner(settings)
     query(reasoner, "ASK { ?s ?p ?o }")
-    assert reasoner._enquiry is not None
-    process = reasoner._enquiry._sparql._process
+    process = reasoner._warm().enquiry._sparql._process
     assert process is not None
     reasoner.close()
     assert process.poll() is not None

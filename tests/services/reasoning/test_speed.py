@@ -71,7 +71,7 @@ def learn_a_lot(reasoner: Reasoner) -> list[str]:
         affordances=tuple(Affordance(name=a.name, description="") for a in affordances),
         rules=tuple(RuleDefinition(**dict(a.rules[0]), affordance=a.name) for a in affordances),
     )
-    reasoner._warm()[1]._memory.change(change)
+    reasoner._warm().knowledge._memory.change(change)
     assert len(reasoner.list_tasks(Nothing()).tasks) == 1000
     return [task.name for task in tasks[::100]]
 

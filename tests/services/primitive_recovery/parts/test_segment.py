@@ -8,7 +8,8 @@ from numpy.typing import NDArray
 from scipy.spatial.transform import Rotation
 
 from experiments.camera import StereoNoise
-from services.primitive_recovery.parts.segment import Cutter, segment
+from services.primitive_recovery.parts.cutter import Cutter
+from services.primitive_recovery.parts.segment import segment
 from shared.schemas.scene import SupportPlane
 from tests.services.primitive_recovery.parts.views import Seen, overlap, seen
 

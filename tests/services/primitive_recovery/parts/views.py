@@ -3,6 +3,7 @@
 from __future__ import annotations
 
 from dataclasses import dataclass, replace
+from functools import cache
 
 import numpy as np
 from numpy.typing import NDArray
@@ -25,6 +26,7 @@ class Seen:
     plane: SupportPlane
 
 
+@cache
 def seen(class_name: str, number: int, noise: StereoNoise | None = None) -> Seen:
     """Return a random object of a class on a table."""
     thing = replace(variant(class_name, np.random.default_rng(number)), name=class_name)
