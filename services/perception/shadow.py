@@ -85,7 +85,7 @@ def goes_on_behind(bar: Array, body: Array, viewpoint: Array, reach: float, voxe
     aside = np.linalg.norm(offsets - advance[:, None] * ahead, axis=1)
     start = float(along.max())
     tip = bar[along > start - 1.5 * voxel]
-    gap = float(cKDTree(tip).query(body)[0].min())
+    gap = float(np.min(cKDTree(tip).query(body)[0]))
     if gap > reach or not (aside[advance > start] < _AIM * voxel).any():
         return False
     steps = np.arange(voxel, max(gap, 4.5 * voxel), voxel)

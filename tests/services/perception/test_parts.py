@@ -8,9 +8,10 @@ import pytest
 from services.perception.cloud import cluster, thin
 from services.perception.noise import measure_noise
 from services.perception.observation import observe
-from services.perception.plane import refine
+from services.perception.plane import measure_plane, refine
 from services.perception.ransac import find_planes
 from services.perception.settings import PerceptionSettings
+from services.perception.tabletop import lay_out
 from services.perception.things import things_of
 from shared.geometry.rotation import unit
 from shared.schemas.scene import PerceiveRequest
@@ -91,3 +92,21 @@ def test_things_come_largest_first(rng: np.random.Generator) -> None:
     things = things_of(points, members, labels)
     assert [len(thing.members) for thing in things] == [30, 10, 5]
     np.testing.assert_array_equal(things[0].members, np.arange(10, 40))
+
+
+@pytest.mark.parametrize(("height", "is_wall"), [(0.3, True), (0.0, False)])
+def test_a_plane_along_the_edge_of_the_table_is_no_wall(height: float, is_wall: bool) -> None:
+    """What lies on the table is in one plane with its edge; a wall stands out of it itself."""
+    grid = np.linspace(-0.5, 0.5, 101)
+    table = np.array([(x, y, 0.0) for x in np.arange(0, 0.5, 0.01) for y in grid])
+    board = np.array([(0.3, y, z) for y in grid[45:56] for z in np.arange(0.01, 0.2, 0.01)])
+    edge = np.array([(0.3, y, z) for y in grid for z in np.arange(0.0, height + 0.01, 0.01)])
+    points = np.vstack([table, board, edge]) - np.array([0, 0, 1.0])
+    view = observe(PerceiveRequest(points=points), "scene", 30, 10**6)
+    level = next(find_planes(view, SETTINGS, np.random.default_rng(0)))
+    across = np.vstack([board, edge]) - np.array([0, 0, 1.0])
+    upright = measure_plane(np.array([-1.0, 0, 0]), 0.3, across, 0.1)
+    assert upright is not None
+    assert upright.length > SETTINGS.max_object_extent_m
+    top = lay_out(level, [upright], view, SETTINGS)
+    assert bool(top.furniture.any()) == is_wall
