@@ -19,15 +19,24 @@ _MULTIPLIER = -7046029254386353131
 def voxel_means(points: Array, edge: float) -> tuple[Array, Labels]:
     """Return the mean (V, 3) of the points (N, 3) in each voxel, and the voxel (N,) of each point.
 
-    Voxels of edge `edge` (metres) are numbered as they first occur.
+    Voxels of edge `edge` (metres) are numbered as they first occur. They lie about the
+    points' mean, along their principal axes: the same points share a voxel in any frame.
     """
     if len(points) == 0:
         return np.empty((0, 3)), np.empty(0, dtype=np.int32)
     points = np.ascontiguousarray(points)
-    low, high = bounds(points)
-    edge = max(edge, float((high - low).max()) / _MAX_CELLS)
-    voxel, count = _number_voxels(points, low, edge)
+    local = own_frame(points)
+    low, high = bounds(local)
+    reach = float(np.maximum(high, -low).max())
+    edge = max(edge, 2 * reach / _MAX_CELLS)
+    voxel, count = _number_voxels(local, int(reach / edge) + 1, edge)
     return _means(points, voxel, count), voxel
+
+
+def own_frame(points: Array) -> Array:
+    """Return points (N, 3) about their mean along their principal axes, of either sign."""
+    centred = points - points.mean(axis=0)
+    return np.ascontiguousarray(centred @ np.linalg.eigh(centred.T @ centred)[1])
 
 
 @kernel
@@ -42,8 +51,12 @@ def bounds(points: Array) -> tuple[Array, Array]:
 
 
 @kernel
-def _number_voxels(points: Array, low: Array, edge: float) -> tuple[Labels, int]:
-    """Return the voxel (N,) of each point and how many there are, by open hashing."""
+def _number_voxels(points: Array, offset: int, edge: float) -> tuple[Labels, int]:
+    """Return the voxel (N,) of each point and how many there are, by open hashing.
+
+    The middle one is centred on zero, so that it does not matter where an axis points;
+    `offset` makes all their numbers positive.
+    """
     size = 16
     while size < 2 * len(points):
         size *= 2
@@ -56,7 +69,8 @@ def _number_voxels(points: Array, low: Array, edge: float) -> tuple[Labels, int]
     for i in range(len(points)):
         key = np.int64(0)
         for axis in range(3):
-            key = (key << 21) | np.int64((points[i, axis] - low[axis]) * cells)
+            cell = np.int64(np.floor(points[i, axis] * cells + 0.5)) + offset
+            key = (key << 21) | cell
         place = ((key * np.int64(_MULTIPLIER)) >> 20) & mask
         while keys[place] != key and keys[place] != -1:
             place = (place + 1) & mask

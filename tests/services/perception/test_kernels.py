@@ -10,6 +10,7 @@ import open3d as o3d
 import pytest
 from numpy.typing import NDArray
 from scipy import ndimage
+from scipy.spatial.transform import Rotation
 
 from services.perception.cloud import cluster, thin
 from services.perception.interpolation import interpolate
@@ -30,7 +31,7 @@ from services.perception.relief_map import (
     points_over,
     window_means,
 )
-from services.perception.voxels import bounds, voxel_means
+from services.perception.voxels import bounds, own_frame, voxel_means
 from shared.geometry.points import points_from_depth
 from shared.geometry.rotation import unit
 from shared.jit import read_only
@@ -121,10 +122,19 @@ def test_voxels(spread: float, rng: np.random.Generator) -> None:
     assert sorted(set(voxel.tolist())) == list(range(len(means)))
     for k in range(len(means)):
         np.testing.assert_allclose(means[k], points[voxel == k].mean(axis=0), rtol=1e-9, atol=1e-12)
-    edge = max(0.03, (high - low).max() / 2e6)
-    cells = np.floor((points - low) / edge)
-    assert len(means) == len(np.unique(cells, axis=0))
+    local = own_frame(points)
+    edge = max(0.03, 2 * np.abs(local).max() / 2e6)
+    cells = np.unique(np.floor(local / edge + 0.5), axis=0, return_inverse=True)[1]
+    np.testing.assert_array_equal(cells[:, None] == cells, voxel[:, None] == voxel)
     np.testing.assert_array_equal(thin(points, 0.03), means)
+
+
+def test_the_same_points_share_a_voxel_in_any_frame(rng: np.random.Generator) -> None:
+    points = rng.normal(size=(3000, 3)) * np.array([0.3, 0.2, 0.01])
+    voxel = voxel_means(points, 0.03)[1]
+    for motion in Rotation.random(5, random_state=1).as_matrix():
+        moved = voxel_means(points @ motion.T + rng.uniform(-1, 1, 3), 0.03)[1]
+        np.testing.assert_array_equal(moved, voxel)
 
 
 @pytest.mark.parametrize("min_neighbours", [1, 3, 6])
