@@ -40,6 +40,15 @@ def tidy(axes: Axes) -> None:
         axes.spines[side].set_visible(False)
 
 
+def iou_frame(axes: Axes, threshold: float, counted: str) -> None:
+    """Finish a plot of the share of `counted` things that reach an IoU, in percent."""
+    axes.axvline(threshold, color="black", lw=0.8)
+    label = f"% of {counted} with at least this IoU"
+    axes.set(xlim=(0, 1), ylim=(0, 100), xlabel="IoU", ylabel=label)
+    axes.legend(fontsize=9)
+    tidy(axes)
+
+
 def share_bars(
     axes: Axes,
     groups: Sequence[str],

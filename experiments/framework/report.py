@@ -10,7 +10,7 @@ from __future__ import annotations
 import base64
 import html
 import json
-from collections.abc import Mapping, Sequence
+from collections.abc import Mapping
 from pathlib import Path
 from typing import Any
 
@@ -90,24 +90,29 @@ def save(results: Path, experiment: Experiment, findings: Findings, run: Mapping
         ),
     )
     page = results / REPORT
-    _write(page, compose(results))
-    _write(results / SUMMARY, summarize(results, ORDER, FINDINGS))
+    sections = gathered(results)
+    _write(page, compose(results, sections))
+    _write(results / SUMMARY, summarize(sections.values()))
     return page
 
 
-def compose(results: Path, order: Sequence[str] = ()) -> str:
-    """Return the page of all findings under `results`; nothing in it is linked from outside.
+def gathered(results: Path) -> dict[str, dict[str, Any]]:
+    """Return what every experiment under `results` found, by name: ORDER first, then others."""
+    found = {path.parent.name: path for path in results.glob(f"*/{FINDINGS}")}
+    names = [name for name in ORDER if name in found] + sorted(set(found) - set(ORDER))
+    return {name: json.loads(found[name].read_text(encoding="utf-8")) for name in names}
+
+
+def compose(results: Path, sections: Mapping[str, Mapping[str, Any]]) -> str:
+    """Return the page of all findings; nothing in it is linked from outside.
 
     Parameters
     ----------
     results : Path
-    order : sequence of str
-        Names of experiments that come first, in this order; others by name.
+        Where the pictures lie, in a folder for each experiment.
+    sections : mapping
+        What each found, by name.
     """
-    order = order or ORDER
-    found = {path.parent.name: path for path in results.glob(f"*/{FINDINGS}")}
-    names = [name for name in order if name in found] + sorted(set(found) - set(order))
-    sections = {name: json.loads(found[name].read_text(encoding="utf-8")) for name in names}
     contents = "\n".join(
         f'<li><a href="#{html.escape(name)}">{html.escape(each["title"])}</a>: '
         f"{html.escape(each['question'])}</li>"

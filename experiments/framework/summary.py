@@ -2,9 +2,7 @@
 
 from __future__ import annotations
 
-import json
-from collections.abc import Sequence
-from pathlib import Path
+from collections.abc import Iterable, Mapping
 from typing import Any
 
 SUMMARY = "results.md"
@@ -19,25 +17,12 @@ computer: they say which size to expect.
 """
 
 
-def summarize(results: Path, order: Sequence[str], findings: str = "findings.json") -> str:
-    """Return the Markdown page of all findings under `results`.
-
-    Parameters
-    ----------
-    results : Path
-        Folder of all experiments.
-    order : sequence of str
-        Names of experiments that come first, in this order; others by name.
-    findings : str
-        Name of the file that each experiment's folder keeps.
-    """
-    found = {path.parent.name: path for path in results.glob(f"*/{findings}")}
-    names = [name for name in order if name in found] + sorted(set(found) - set(order))
-    sections = [_section(json.loads(found[name].read_text(encoding="utf-8"))) for name in names]
-    return "\n".join([_HEAD, *sections])
+def summarize(findings: Iterable[Mapping[str, Any]]) -> str:
+    """Return the Markdown page of findings, as `findings.json` of each experiment holds them."""
+    return "\n".join([_HEAD, *map(_section, findings)])
 
 
-def _section(held: dict[str, Any]) -> str:
+def _section(held: Mapping[str, Any]) -> str:
     run = held["run"]
     thesis = f" ({held['thesis']})" if held["thesis"] else ""
     tables = "\n".join(held.get("markdown", ()))

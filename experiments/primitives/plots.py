@@ -5,7 +5,7 @@ from __future__ import annotations
 from collections.abc import Sequence
 
 from experiments.framework import Plot
-from experiments.framework.plots import OTHER, V1, cumulative, new_figure, tidy
+from experiments.framework.plots import OTHER, V1, cumulative, iou_frame, new_figure, tidy
 from experiments.framework.scoring import GOOD_IOU
 from experiments.primitives.model import METHODS, Cut
 from experiments.primitives.tables import regions_of
@@ -29,10 +29,7 @@ def distribution(cuts: Sequence[Cut]) -> Plot:
                 linestyle=line,
                 label=f"{source}, {method}",
             )
-    axes.axvline(GOOD_IOU, color="black", lw=0.8)
-    axes.set(xlim=(0, 1), ylim=(0, 100), xlabel="IoU", ylabel="% of regions with at least this IoU")
-    axes.legend(fontsize=9)
-    tidy(axes)
+    iou_frame(axes, GOOD_IOU, "regions")
     return Plot(
         "iou",
         "How well the best single part is the labelled region: the share of all regions that "

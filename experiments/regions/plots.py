@@ -6,7 +6,7 @@ from collections.abc import Sequence
 
 from experiments.framework import Asked, Plot, Share
 from experiments.framework.asking import VERSION_NAMES
-from experiments.framework.plots import COLOURS, cumulative, new_figure, share_bars, tidy
+from experiments.framework.plots import COLOURS, cumulative, iou_frame, new_figure, share_bars
 from experiments.framework.scoring import GOOD_IOU
 from experiments.framework.thesis import TABLE_6_3
 
@@ -77,10 +77,7 @@ def distribution(asked: Sequence[Asked]) -> Plot:
                 linestyle=line,
                 label=f"{source}, {name}",
             )
-    axes.axvline(GOOD_IOU, color="black", lw=0.8)
-    axes.set(xlim=(0, 1), ylim=(0, 100), xlabel="IoU", ylabel="% of views with at least this IoU")
-    axes.legend(fontsize=9)
-    tidy(axes)
+    iou_frame(axes, GOOD_IOU, "views")
     return Plot(
         "iou",
         "How much predicted and labelled region overlap: the share of all views that reach an "

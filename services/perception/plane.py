@@ -12,6 +12,7 @@ from services.perception.moments import biweight_moments
 from services.perception.noise import SIGMA_PER_MEDIAN
 from services.perception.settings import PerceptionSettings
 from shared.geometry.plane import height_above, plane_basis
+from shared.geometry.points import tail_signs
 
 Array = NDArray[np.float64]
 
@@ -90,8 +91,7 @@ def measure_plane(normal: Array, offset: float, mapped: Array, share: float) -> 
     basis = plane_basis(normal)
     basis = basis @ np.linalg.eigh(np.cov(basis.T @ mapped.T))[1]
     uv = basis.T @ mapped.T  # one row each: NumPy reduces rows many times faster than columns
-    # Each axis points to its longer tail: the same way in any frame.
-    signs = np.where(((uv - uv.mean(axis=1, keepdims=True)) ** 3).sum(axis=1) < 0, -1.0, 1.0)
+    signs = tail_signs((uv - uv.mean(axis=1, keepdims=True)).T)
     basis, uv = basis * signs, uv * signs[:, None]
     box = np.array([uv.min(axis=1), uv.max(axis=1)])
     width, length = np.sort(box[1] - box[0]).tolist()

@@ -38,3 +38,17 @@ def principal_axes(points: Array) -> tuple[Array, Array]:
     if np.linalg.det(vectors) < 0:
         vectors[:, 2] *= -1
     return values[::-1].clip(min=0.0), vectors
+
+
+def tail_signs(placed: Array) -> Array:
+    """Return signs (D,) that turn axes to where the points reach farther, by the third moment.
+
+    So that axes without a direction of their own move with the points, in any frame.
+
+    Parameters
+    ----------
+    placed : (N, D) array
+        Points about their mean, along the axes.
+    """
+    skew = np.einsum("ij,ij,ij->j", placed, placed, placed)
+    return np.where(skew < 0, -1.0, 1.0)

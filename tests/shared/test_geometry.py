@@ -7,7 +7,7 @@ from hypothesis import example, given
 from hypothesis import strategies as st
 
 from shared.geometry.plane import fit_plane, height_above, plane_basis
-from shared.geometry.points import points_from_depth, principal_axes
+from shared.geometry.points import points_from_depth, principal_axes, tail_signs
 from shared.geometry.rotation import (
     frame_from_z,
     matrix_from_quaternion,
@@ -103,3 +103,10 @@ def test_principal_axes_are_sorted_and_right_handed(rng: np.random.Generator) ->
     assert (np.diff(variances) <= 0).all()
     assert np.linalg.det(axes) > 0
     assert abs(axes[1, 0]) > 0.99
+
+
+def test_tail_signs_turn_axes_the_same_way_whichever_way_they_came() -> None:
+    placed = np.random.default_rng(4).exponential(size=(500, 3)) - 1.0
+    for flip in ([1.0, 1.0, 1.0], [-1.0, 1.0, -1.0], [-1.0, -1.0, -1.0]):
+        np.testing.assert_array_equal(tail_signs(placed * flip), flip)
+    np.testing.assert_array_equal(tail_signs(np.zeros((4, 2))), [1.0, 1.0])

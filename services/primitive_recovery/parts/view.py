@@ -13,6 +13,7 @@ from services.primitive_recovery.parts.silhouette import (
     silhouette,
     spacing,
 )
+from shared.geometry.points import tail_signs
 from shared.geometry.rotation import unit
 from shared.schemas.scene import SupportPlane
 
@@ -106,6 +107,4 @@ def principal_axes(centred: Array) -> Array:
     the axes move with the points.
     """
     axes = np.linalg.eigh(centred.T @ centred)[1][:, ::-1].T
-    placed = centred @ axes.T
-    skew = np.einsum("ij,ij,ij->j", placed, placed, placed)
-    return np.asarray(np.where(skew < 0, -1.0, 1.0)[:, None] * axes)
+    return np.asarray(tail_signs(centred @ axes.T)[:, None] * axes)
