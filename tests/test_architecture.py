@@ -20,6 +20,7 @@ SHARED_LAYERS = (  # lowest first; a module may import its own layer and those b
     {"superquadric"},
     {"settings", "wire"},
     {"schemas"},
+    {"grippers"},
     {"service"},
     {"client"},
 )

@@ -125,7 +125,9 @@ def judged(end: Held) -> Verdict:
             f"the object rose by {mm(end.rise)} and stayed between the fingers, "
             f"{mm(end.opening)} apart, which press with {end.left:.0f} N and {end.right:.0f} N",
         )
-    return Verdict("slipped", f"the object was gripped, but {what}; it rose by {mm(end.rise)}")
+    return Verdict(
+        "slipped_in_lift", f"the object was gripped, but {what}; it rose by {mm(end.rise)}"
+    )
 
 
 def mm(metres: float) -> str:

@@ -5,7 +5,7 @@ from __future__ import annotations
 from dataclasses import dataclass
 
 from services.grasp_proposal.settings import GraspProposalSettings
-from shared.schemas.grasp import Gripper
+from shared.schemas.gripper import ParallelGripper
 
 
 @dataclass(frozen=True)
@@ -15,7 +15,7 @@ class Hand:
     Attributes
     ----------
     max_opening, finger_width, finger_thickness, finger_length, tip_beyond_tcp
-        As in `shared.schemas.grasp.Gripper`.
+        As in `shared.schemas.gripper.ParallelGripper`.
     palm_size : tuple of float
         Along x, y, z.
     clearance, support_clearance, palm_clearance, pregrasp
@@ -34,7 +34,7 @@ class Hand:
     pregrasp: float
 
     @classmethod
-    def of(cls, gripper: Gripper, settings: GraspProposalSettings) -> Hand:
+    def of(cls, gripper: ParallelGripper, settings: GraspProposalSettings) -> Hand:
         """Join a gripper's geometry and the service's settings."""
         return cls(
             max_opening=gripper.max_opening,

@@ -10,7 +10,6 @@ from numpy.typing import NDArray
 from services.grasp_proposal.boxes import support_clearance, touches_obstacle
 from services.grasp_proposal.contacts import Contacts, find_contacts
 from services.grasp_proposal.diversity import distinct
-from services.grasp_proposal.gripper import choose_gripper, load_grippers
 from services.grasp_proposal.hand import Hand
 from services.grasp_proposal.orientations import hypothesise
 from services.grasp_proposal.placements import Placements
@@ -20,9 +19,12 @@ from services.grasp_proposal.settings import GraspProposalSettings
 from services.grasp_proposal.surface import local_frames
 from services.grasp_proposal.visibility import SightMap
 from services.grasp_proposal.workspace import Workspace, build_workspace
+from shared.errors import UnknownGripper
 from shared.geometry.rotation import quaternion_from_matrix
 from shared.geometry.se3 import transform_points
-from shared.schemas.grasp import GripperList, ProposeRequest, ProposeResponse
+from shared.grippers import choose_gripper, load_grippers
+from shared.schemas.grasp import ProposeRequest, ProposeResponse
+from shared.schemas.gripper import GripperList, SuctionGripper
 from shared.schemas.route import Nothing
 from shared.schemas.scene import SupportPlane
 
@@ -38,7 +40,7 @@ class GraspProposer:
 
     def __init__(self, settings: GraspProposalSettings) -> None:
         self._settings = settings
-        self._grippers = load_grippers()
+        self._grippers = load_grippers(settings.grippers_dir)
 
     def list_grippers(self, _: Nothing) -> GripperList:
         """Return the known grippers, in alphabetical order."""
@@ -70,6 +72,12 @@ class GraspProposer:
             See `choose_gripper` and `build_workspace`.
         """
         gripper = choose_gripper(self._grippers, request.gripper)
+        if isinstance(gripper, SuctionGripper):
+            raise UnknownGripper(
+                f"no grasps are proposed for the suction gripper {gripper.name!r} yet",
+                field="gripper",
+                found=gripper.name,
+            )
         hand = Hand.of(gripper, self._settings)
         workspace = build_workspace(request)
         rejected: Counter[str] = Counter()

@@ -4,10 +4,11 @@ from __future__ import annotations
 
 from pydantic import Field
 
-from shared.settings import ServiceSettings, environment
+from shared.grippers import GripperSettings
+from shared.settings import environment
 
 
-class GraspProposalSettings(ServiceSettings):
+class GraspProposalSettings(GripperSettings):
     """Distances that a hand keeps, and how many grasps an answer holds.
 
     Attributes

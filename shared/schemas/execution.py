@@ -16,11 +16,13 @@ from shared.wire import ArrayField, Message
 
 Outcome = Literal[
     "lifted",
+    "held",
     "unreachable",
     "collision_with_table",
     "pushed_away",
     "missed",
-    "slipped",
+    "slipped_in_lift",
+    "slipped_in_shake",
 ]
 
 
@@ -39,6 +41,12 @@ class ExecuteRequest(Message):
     plane: SupportPlane | None = None
     up: Direction | None = None
     gripper: str = "panda"
+    """A name from GET /grippers."""
+    actor: Literal["arm", "hand"] | None = None
+    """`arm`: the whole Panda arm with inverse kinematics, for the gripper `panda` alone;
+    `hand`: the gripper flies by itself. None: the arm where there is one."""
+    strict: bool = False
+    """Shake and tilt the object after the lift, too."""
     seed: Annotated[int, Field(ge=0, lt=2**32)] = 0
     animate: bool = False
     """Film what happens; changes nothing about it, but takes a few seconds longer."""

@@ -6,9 +6,10 @@ from typing import Annotated
 
 import numpy as np
 from numpy.typing import NDArray
-from pydantic import Field, FiniteFloat
+from pydantic import Field
 
 from shared.schemas.fields import Direction, GraspRows, Labels, Mask, Points, Quaternion, Vector3
+from shared.schemas.gripper import GripperList
 from shared.schemas.primitive import Primitive
 from shared.schemas.route import Nothing, Route
 from shared.schemas.scene import SupportPlane
@@ -23,31 +24,6 @@ class Pose(Message):
 
     position: Vector3
     quaternion: Quaternion
-
-
-class Gripper(Message):
-    """A parallel gripper's geometry, metres, in the grasp frame."""
-
-    name: str
-    description: str
-    max_opening: Annotated[FiniteFloat, Field(gt=0)]
-    """Largest distance between the pads."""
-    finger_width: Annotated[FiniteFloat, Field(gt=0)]
-    """Along x."""
-    finger_thickness: Annotated[FiniteFloat, Field(gt=0)]
-    """Of each finger along y, outside the opening."""
-    finger_length: Annotated[FiniteFloat, Field(gt=0)]
-    """From the palm to the tips, along z."""
-    tip_beyond_tcp: Annotated[FiniteFloat, Field(ge=0)]
-    """How far the tips reach past the tool centre point along +z."""
-    palm_size: Vector3
-    """Box of the hand behind the fingers: along x, y, z."""
-
-
-class GripperList(Message):
-    """All grippers that can be asked for."""
-
-    grippers: tuple[Gripper, ...]
 
 
 class ProposeRequest(Message):

@@ -117,7 +117,7 @@ def trial(pose: str = "flat", outcome: Outcome | None = "lifted", film: bytes = 
 
 
 def test_what_was_not_found_counts() -> None:
-    trials = [trial(), trial(outcome="slipped"), trial(outcome=None)]
+    trials = [trial(), trial(outcome="slipped_in_lift"), trial(outcome=None)]
     (row,) = summary(trials).texts()
     named = dict(zip(summary(trials).columns, row, strict=True))
     assert named["found"].startswith("2/3")
@@ -125,7 +125,7 @@ def test_what_was_not_found_counts() -> None:
     assert named["lift height (mm)"].startswith("300")
     assert [row[-2] for row in one_by_one(trials).texts()] == [
         "lifted",
-        "slipped",
+        "slipped_in_lift",
         "no region: no part matches",
     ]
 
@@ -133,7 +133,7 @@ def test_what_was_not_found_counts() -> None:
 def test_lifted_by_the_wrong_part_is_no_success() -> None:
     assert trial().succeeded
     assert not replace(trial(), in_region=False).succeeded
-    assert not trial(outcome="slipped").succeeded
+    assert not trial(outcome="slipped_in_lift").succeeded
 
 
 def moving_square(count: int, colour: tuple[int, int, int]) -> bytes:

@@ -24,7 +24,7 @@ def test_held_in_the_air_is_lifted() -> None:
 )
 def test_anything_less_is_slipped(end: Held, says: str) -> None:
     verdict = judged(end)
-    assert verdict.outcome == "slipped"
+    assert verdict.outcome == "slipped_in_lift"
     assert says in verdict.message
 
 

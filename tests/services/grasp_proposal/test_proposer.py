@@ -6,13 +6,14 @@ import numpy as np
 import pytest
 from numpy.typing import NDArray
 
-from services.grasp_proposal.gripper import load_grippers
 from services.grasp_proposal.proposer import GraspProposer
 from services.grasp_proposal.settings import GraspProposalSettings
 from shared.errors import UnknownGripper
 from shared.geometry.rotation import matrix_from_quaternion
 from shared.geometry.se3 import inverse, matrix_from_pose, pose_matrix, transform_points
-from shared.schemas.grasp import Gripper, ProposeRequest, ProposeResponse
+from shared.grippers import load_grippers
+from shared.schemas.grasp import ProposeRequest, ProposeResponse
+from shared.schemas.gripper import ParallelGripper
 from shared.schemas.route import Nothing
 from tests.services.grasp_proposal.scenes import (
     Scene,
@@ -25,6 +26,11 @@ from tests.services.grasp_proposal.scenes import (
 Array = NDArray[np.float64]
 
 PROPOSER = GraspProposer(GraspProposalSettings())
+PARALLEL = {
+    name: gripper
+    for name, gripper in load_grippers().items()
+    if isinstance(gripper, ParallelGripper)
+}
 CYLINDER = lying_cylinder()
 BAR = box((0.025, 0.15, 0.008))
 BOTTLE = box((0.05, 0.06, 0.18), turn=0.2)
@@ -40,11 +46,11 @@ def best_score(answer: ProposeResponse) -> float:
 
 
 @pytest.mark.parametrize("scene", [CYLINDER, BAR, BOTTLE], ids=["cylinder", "bar", "bottle"])
-@pytest.mark.parametrize("gripper", list(load_grippers()))
+@pytest.mark.parametrize("gripper", list(PARALLEL))
 def test_no_grasp_touches_anything_on_its_way(scene: Scene, gripper: str) -> None:
     answer = propose(scene, gripper=gripper)
     assert len(answer.grasps) >= 3
-    hand = load_grippers()[gripper]
+    hand = PARALLEL[gripper]
     for row in answer.grasps:
         object_from_hand = matrix_from_pose(row[:3], row[3:7])
         points = transform_points(inverse(object_from_hand), scene.points)
@@ -63,7 +69,7 @@ def test_no_grasp_touches_anything_on_its_way(scene: Scene, gripper: str) -> Non
 
 
 def corners_above_table(
-    motion: Array, palm: tuple[float, ...], opening: float, hand: Gripper
+    motion: Array, palm: tuple[float, ...], opening: float, hand: ParallelGripper
 ) -> float:
     tip, back = hand.tip_beyond_tcp, hand.tip_beyond_tcp - hand.finger_length
     side = opening / 2 + hand.finger_thickness
@@ -93,7 +99,7 @@ def test_a_lying_cylinder_is_held_across_its_axis() -> None:
 def test_a_flat_bar_is_held_from_above_just_over_the_table() -> None:
     best = propose(BAR).grasps[0]
     rotation = matrix_from_quaternion(best[3:7])
-    tips = best[2] + rotation[2, 2] * load_grippers()["panda"].tip_beyond_tcp
+    tips = best[2] + rotation[2, 2] * PARALLEL["panda"].tip_beyond_tcp
     assert rotation[2, 2] < -0.7
     assert abs(rotation[:, 1] @ about_z(0.3)[:, 0]) > 0.9
     assert 0.001 < tips < 0.006

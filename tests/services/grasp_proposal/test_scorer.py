@@ -6,7 +6,6 @@ import numpy as np
 import pytest
 
 from services.grasp_proposal.contacts import Contacts, find_contacts
-from services.grasp_proposal.gripper import load_grippers
 from services.grasp_proposal.hand import Hand
 from services.grasp_proposal.placements import Placements
 from services.grasp_proposal.scorer import factors, score, tool_centre
@@ -14,9 +13,13 @@ from services.grasp_proposal.settings import GraspProposalSettings
 from services.grasp_proposal.visibility import SightMap
 from services.grasp_proposal.workspace import Workspace, build_workspace
 from shared.geometry.se3 import inverse, transform_points
+from shared.grippers import load_grippers
+from shared.schemas.gripper import ParallelGripper
 from tests.services.grasp_proposal.scenes import Scene, about_z, box, lying_cylinder
 
-HAND = Hand.of(load_grippers()["panda"], GraspProposalSettings())
+PANDA = load_grippers()["panda"]
+assert isinstance(PANDA, ParallelGripper)
+HAND = Hand.of(PANDA, GraspProposalSettings())
 DOWN = np.column_stack([[0.0, 1, 0], [1.0, 0, 0], [0.0, 0, -1]])
 
 

@@ -4,8 +4,9 @@ from pathlib import Path
 
 import pytest
 
-from services.grasp_proposal.gripper import choose_gripper, load_grippers
 from shared.errors import UnknownGripper
+from shared.grippers import GripperSettings, choose_gripper, load_grippers
+from shared.schemas.gripper import ParallelGripper, SuctionGripper
 
 GOOD = """name = "{name}"
 description = "test"
@@ -21,7 +22,11 @@ palm_size = [0.06, 0.1, 0.06]
 def test_the_four_grippers() -> None:
     grippers = load_grippers()
     assert list(grippers) == ["panda", "robotiq_2f140", "robotiq_2f85", "tiago"]
-    openings = {name: gripper.max_opening for name, gripper in grippers.items()}
+    openings = {
+        name: gripper.max_opening
+        for name, gripper in grippers.items()
+        if isinstance(gripper, ParallelGripper)
+    }
     assert openings == {"panda": 0.08, "robotiq_2f140": 0.14, "robotiq_2f85": 0.085, "tiago": 0.09}
 
 
@@ -46,3 +51,34 @@ def test_a_wrong_file_is_refused(tmp_path: Path, text: str, said: str) -> None:
     (tmp_path / "mine.toml").write_text(text)
     with pytest.raises(ValueError, match=said):
         load_grippers(tmp_path)
+
+
+SUCTION = """kind = "suction"
+name = "mine"
+description = "test"
+cup_diameter = 0.03
+cup_length = 0.05
+compliance = 0.002
+palm_size = [0.06, 0.06, 0.1]
+force = 30
+"""
+
+
+def test_the_users_folder_adds_and_replaces(
+    tmp_path: Path, monkeypatch: pytest.MonkeyPatch
+) -> None:
+    (tmp_path / "mine.toml").write_text(SUCTION)
+    (tmp_path / "panda.toml").write_text(GOOD.format(name="panda", length=0.05))
+    monkeypatch.setenv("SPARGE_GRIPPERS_DIR", str(tmp_path))
+    grippers = load_grippers(GripperSettings().grippers_dir)
+    assert isinstance(grippers["mine"], SuctionGripper)
+    panda = grippers["panda"]
+    assert isinstance(panda, ParallelGripper)
+    assert panda.max_opening == 0.05
+    assert list(grippers) == sorted(grippers)
+    assert "tiago" in grippers
+
+
+def test_a_folder_that_is_not_there(tmp_path: Path) -> None:
+    with pytest.raises(ValueError, match="no folder"):
+        load_grippers(tmp_path / "none")
