@@ -10,9 +10,10 @@ from experiments.catalogue import build
 from experiments.demo.films import side_by_side, strips
 from experiments.demo.scenes import POSES, Scene, make_scene
 from experiments.demo.tables import one_by_one, summary
-from experiments.demo.trials import Arm, Trial, attempt
+from experiments.demo.trials import Trial, attempt
 from experiments.framework import Context, Experiment, Findings
 from experiments.framework.asking import VERSIONS, mapped
+from experiments.framework.replay import Replays
 from shared.schemas.task import Version
 
 BOTTLE = "bottle"
@@ -30,7 +31,7 @@ def run(context: Context) -> Findings:
         for number in range(views)
     ]
 
-    arm = Arm(context.sparge)
+    arm = Replays(context.sparge)
 
     def tried(question: tuple[Scene, str, Version]) -> Trial:
         return attempt(context.sparge, arm, *question)

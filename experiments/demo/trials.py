@@ -2,7 +2,6 @@
 
 from __future__ import annotations
 
-import hashlib
 from collections.abc import Mapping
 from dataclasses import dataclass, field, replace
 
@@ -10,12 +9,12 @@ import numpy as np
 from numpy.typing import NDArray
 
 from experiments.demo.scenes import Scene
+from experiments.framework.replay import Replays
 from experiments.framework.scoring import RegionScore, holds, score_region
 from shared.client import GraspResult, Sparge
-from shared.schemas.execution import EXECUTE, ExecuteRequest, ExecuteResponse
+from shared.schemas.execution import ExecuteRequest, ExecuteResponse
 from shared.schemas.grasp import Pose
 from shared.schemas.task import Version
-from shared.wire import NPZ, encode
 
 MAX_GRASPS = 5
 """The arm tries the next best grasp while it finds no way to the one before."""
@@ -111,26 +110,7 @@ class Trial:
         }
 
 
-class Arm:
-    """Executes grasps on a backend; what was executed before is not executed again.
-
-    The same request always gets the same answer, and both versions of the
-    reasoning often end with the same grasp.
-    """
-
-    def __init__(self, sparge: Sparge) -> None:
-        self._sparge = sparge
-        self._known: dict[bytes, ExecuteResponse] = {}
-
-    def execute(self, request: ExecuteRequest) -> ExecuteResponse:
-        """Return what comes of a request."""
-        key = hashlib.sha256(encode(request, NPZ)).digest()
-        if key not in self._known:
-            self._known[key] = self._sparge.call(EXECUTE, request)
-        return self._known[key]
-
-
-def attempt(sparge: Sparge, arm: Arm, scene: Scene, task: str, version: Version) -> Trial:
+def attempt(sparge: Sparge, arm: Replays, scene: Scene, task: str, version: Version) -> Trial:
     """Ask for the best grasps and execute the first that the arm finds a way to.
 
     Raises
@@ -159,7 +139,7 @@ def attempt(sparge: Sparge, arm: Arm, scene: Scene, task: str, version: Version)
     return _executed(arm, scene, trial, result)
 
 
-def _executed(arm: Arm, scene: Scene, trial: Trial, result: GraspResult) -> Trial:
+def _executed(arm: Replays, scene: Scene, trial: Trial, result: GraspResult) -> Trial:
     """Return the trial with what the arm made of its grasps, best first."""
     for tried, grasp in enumerate(result.grasps, start=1):
         happened = arm.execute(execution(scene, trial.task, grasp))

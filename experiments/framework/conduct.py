@@ -3,10 +3,12 @@
 from __future__ import annotations
 
 from collections.abc import Sequence
+from dataclasses import replace
 from pathlib import Path
 
 from rich.console import Console
 
+from experiments.catalogue.mesh_folder import read_mesh_folder
 from experiments.framework.asking import progress_bar
 from experiments.framework.catalogue_views import catalogue_sets
 from experiments.framework.experiment import Context, Experiment, Findings
@@ -60,17 +62,26 @@ def view_sets(
     seed: int,
     console: Console,
     workers: int = 1,
+    meshes: Path | None = None,
 ) -> tuple[ViewSet, ...]:
     """Return what the experiment is to be asked about; renders the catalogue's views if need be.
+
+    Parameters
+    ----------
+    meshes : Path, optional
+        Label file of the scans' meshes (docs/catalogue.md), for what needs the true object.
 
     Raises
     ------
     InvalidInput
-        A folder of scans holds no views.
+        A folder of scans holds no views, or the label file or a mesh cannot be read.
     """
     if experiment.views_per_object is None:
         return ()
     sets = scan_sets(scans)
+    if meshes is not None:
+        objects = read_mesh_folder(meshes)
+        sets = tuple(replace(each, objects=objects) for each in sets)
     if not catalogue:
         return sets
     with progress_bar(console) as progress:

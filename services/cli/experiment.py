@@ -34,6 +34,10 @@ def experiment(
         list[Path] | None,
         typer.Option(help="Also ask about this folder of labelled views; may be repeated"),
     ] = None,
+    meshes: Annotated[
+        Path | None,
+        typer.Option(help="The scans' own meshes: a label file as in docs/catalogue.md"),
+    ] = None,
     catalogue: Annotated[
         bool, typer.Option(help="Ask about views of the catalogue's objects")
     ] = True,
@@ -70,6 +74,7 @@ def experiment(
         seed=seed,
         console=progress,
         workers=workers,
+        meshes=meshes,
     )
     with own_backend(url) as sparge:
         context = context_for(

@@ -16,7 +16,8 @@ from experiments.demo.experiment import BOTTLE, FILM, TASKS, findings
 from experiments.demo.films import FRAME_MS, LAST_FRAME_MS, frames, side_by_side
 from experiments.demo.scenes import POSES, Scene, make_scene
 from experiments.demo.tables import one_by_one, summary
-from experiments.demo.trials import Arm, Trial, attempt, execution
+from experiments.demo.trials import Trial, attempt, execution
+from experiments.framework.replay import Replays
 from experiments.framework.scoring import RegionScore
 from shared.client import Sparge
 from shared.schemas.execution import ExecuteResponse, Outcome, Phase
@@ -70,7 +71,7 @@ def test_the_part_to_hold_is_highlighted() -> None:
 
 
 def test_a_slice_of_the_experiment(sparge: Sparge, tmp_path: Path) -> None:
-    real = attempt(sparge, Arm(sparge), scene("upright"), "handover", "v1")
+    real = attempt(sparge, Replays(sparge), scene("upright"), "handover", "v1")
     trials = [real, trial("flat", outcome=None)]
     found = findings(trials, tmp_path)
     headline, every = found.tables
