@@ -219,6 +219,7 @@ class Pipeline:
                 points=scene.object_points,
                 point_region=assigned.point_region,
                 grasps=proposed.grasps,
+                on_region=proposed.on_focus,
                 max_grasps=request.parameters.max_grasps,
             ),
         )

@@ -40,8 +40,9 @@ class PadMarks(NamedTuple):
 
     Attributes
     ----------
-    touched, strips : (G,) arrays
-        Points that the pad touches, and strips of its width that have one.
+    touched, in_focus, strips : (G,) arrays
+        Points that the pad touches, those of them in focus, and strips of the pad's width
+        that have one.
     x : (G,) array
         Mean coordinate along the hand's x.
     normal, centre : (G, 3) arrays
@@ -53,6 +54,7 @@ class PadMarks(NamedTuple):
     """
 
     touched: Array
+    in_focus: Array
     strips: Array
     x: Array
     normal: Array
@@ -123,7 +125,7 @@ def look_closer(
             look.in_focus[g] += held[i] and focus[index[i]]
         look.number[g] = part.number
         look.left[g], look.right[g], look.front[g] = part.left, part.right, part.front
-        slab = local, points, normals, index, held, finger_width, tip
+        slab = local, points, normals, focus, index, held, finger_width, tip
         _mark_pad(*slab, -1.0, part.left, look.left_pad, g)
         _mark_pad(*slab, 1.0, part.right, look.right_pad, g)
     return look
@@ -132,6 +134,7 @@ def look_closer(
 @kernel
 def _no_marks(hands: int) -> PadMarks:
     return PadMarks(
+        np.zeros(hands),
         np.zeros(hands),
         np.zeros(hands),
         np.zeros(hands),
@@ -215,6 +218,7 @@ def _mark_pad(
     local: Array,
     points: Array,
     normals: Array,
+    focus: Mask,
     index: Rows,
     held: Mask,
     finger_width: float,
@@ -232,6 +236,7 @@ def _mark_pad(
         outwards = sign * (local[1, i] - edge)
         if held[i] and outwards > -_EDGE:
             pad.touched[g] += 1.0
+            pad.in_focus[g] += focus[index[i]]
             pad.x[g] += x
             for axis in range(3):
                 pad.normal[g, axis] += normals[index[i], axis]

@@ -47,6 +47,8 @@ class Contacts:
         How far the tips reach past the part's front, metres.
     in_focus : (G,) array
         Share of the enclosed points where a grasp is wanted.
+    left_in_focus, right_in_focus : (G,) arrays
+        The same of the points that each pad touches.
     finger_hit, palm_hit, empty : (G,) bool arrays
         Touches the object on the way; holds nothing.
     """
@@ -61,6 +63,8 @@ class Contacts:
     twist: Array
     engagement: Array
     in_focus: Array
+    left_in_focus: Array
+    right_in_focus: Array
     finger_hit: Mask
     palm_hit: Mask
     empty: Mask
@@ -97,6 +101,8 @@ def find_contacts(workspace: Workspace, hand: Hand, placed: Placements) -> Conta
         twist=np.abs(left_side.x - right_side.x),
         engagement=placed.tip - seen.front,
         in_focus=seen.in_focus / np.maximum(seen.number, 1),
+        left_in_focus=left_side.in_focus,
+        right_in_focus=right_side.in_focus,
         finger_hit=finger_hits(exact, hand, opening, workspace.points),
         palm_hit=palm_hits(exact, hand, workspace.points),
         empty=seen.number < _LEAST_POINTS,

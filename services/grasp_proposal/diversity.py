@@ -2,6 +2,8 @@
 
 from __future__ import annotations
 
+from dataclasses import dataclass
+
 import numpy as np
 from numpy.typing import NDArray
 
@@ -9,16 +11,25 @@ from shared.jit import kernel
 
 Array = NDArray[np.float64]
 
-_NEAR = 0.010
-_ALIKE_COS = float(np.cos(np.radians(20.0)))
+
+@dataclass(frozen=True)
+class Likeness:
+    """When two grasps are alike: tool centre points and both axes less far apart than this.
+
+    A half turn about the approach is the same grasp of a parallel gripper.
+    """
+
+    distance: float
+    angle_deg: float
 
 
-def distinct(centres: Array, rotations: Array, limit: int) -> NDArray[np.intp]:
-    """Return indices of grasps that are not close to a better one.
+ANSWERED = Likeness(distance=0.010, angle_deg=20.0)
 
-    Two grasps are close when their tool centre points are less than 10 mm and
-    their axes less than 20 degrees apart; a half turn about the approach is the
-    same grasp of a parallel gripper.
+
+def distinct(
+    centres: Array, rotations: Array, limit: int, likeness: Likeness = ANSWERED
+) -> NDArray[np.intp]:
+    """Return indices of grasps that are not like a better one.
 
     Parameters
     ----------
@@ -27,17 +38,22 @@ def distinct(centres: Array, rotations: Array, limit: int) -> NDArray[np.intp]:
         Best grasp first.
     limit : int
         Return at most so many.
+    likeness : Likeness
     """
     return _distinct(
         np.ascontiguousarray(centres),
         np.ascontiguousarray(rotations[:, :, 2]),
         np.ascontiguousarray(rotations[:, :, 1]),
         limit,
+        likeness.distance,
+        float(np.cos(np.radians(likeness.angle_deg))),
     )
 
 
 @kernel
-def _distinct(centres: Array, approach: Array, closing: Array, limit: int) -> NDArray[np.intp]:
+def _distinct(
+    centres: Array, approach: Array, closing: Array, limit: int, near: float, cos: float
+) -> NDArray[np.intp]:
     kept = np.empty(len(centres), dtype=np.intp)
     count = 0
     for index in range(len(centres)):
@@ -50,7 +66,7 @@ def _distinct(centres: Array, approach: Array, closing: Array, limit: int) -> ND
                 away += (centres[other, axis] - centres[index, axis]) ** 2
                 along += approach[other, axis] * approach[index, axis]
                 across += closing[other, axis] * closing[index, axis]
-            if away < _NEAR**2 and along > _ALIKE_COS and abs(across) > _ALIKE_COS:
+            if away < near**2 and along > cos and abs(across) > cos:
                 alike = True
                 break
         if not alike:

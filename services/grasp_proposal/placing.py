@@ -35,13 +35,14 @@ class Reach(NamedTuple):
 
 
 class Found(NamedTuple):
-    """For each of H hands the depth (index, -1 for none) that holds the part best.
+    """For each of H hands two depths, (H, 2) each: the one that holds the part best, the deepest.
 
+    `depth` is the index, -1 for none; the second is -1 as well where it would be the first.
     There the part covers `left` bins to the left of the sample's own and `right` to the
     right, and begins at `front` (metres along the approach).
     """
 
-    best: Bins
+    depth: Bins
     left: Bins
     right: Bins
     front: Array
@@ -77,8 +78,8 @@ def place_hands(
         Which of them to try.
     """
     hands, depths = tips.shape
-    best, left = np.full(hands, -1, dtype=np.int32), np.zeros(hands, dtype=np.int32)
-    right, front = np.zeros(hands, dtype=np.int32), np.zeros(hands)
+    depth, left = np.full((hands, 2), -1, dtype=np.int32), np.zeros((hands, 2), dtype=np.int32)
+    right, front = np.zeros((hands, 2), dtype=np.int32), np.zeros((hands, 2))
     around, inside = np.empty((3, len(surface))), np.empty(len(surface), dtype=np.int32)
     profile = np.empty(2 * reach.half_bins + 1)
     count, centre = 0, -1
@@ -108,10 +109,15 @@ def place_hands(
             good += 1
             engaged = min(tips[h, d] - nearest, reach.good_engagement) / reach.good_engagement
             value = engaged * (1.0 - 0.5 * width / reach.max_opening)
-            if value > most:
-                most = value
-                best[h], left[h], right[h], front[h] = d, to_left, to_right, nearest
-    return Found(best, left, right, front, good, too_wide, collides)
+            for which in range(2):  # depths rise: the last good one is the deepest
+                if which == 0 and not value > most:
+                    continue
+                depth[h, which], front[h, which] = d, nearest
+                left[h, which], right[h, which] = to_left, to_right
+            most = max(most, value)
+        if depth[h, 1] == depth[h, 0]:
+            depth[h, 1] = -1
+    return Found(depth, left, right, front, good, too_wide, collides)
 
 
 @kernel

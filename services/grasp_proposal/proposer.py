@@ -9,7 +9,7 @@ from numpy.typing import NDArray
 
 from services.grasp_proposal.boxes import support_clearance, touches_obstacle
 from services.grasp_proposal.contacts import Contacts, find_contacts
-from services.grasp_proposal.diversity import distinct
+from services.grasp_proposal.diversity import Likeness, distinct
 from services.grasp_proposal.hand import Hand
 from services.grasp_proposal.orientations import hypothesise
 from services.grasp_proposal.placements import Placements
@@ -31,6 +31,7 @@ from shared.schemas.scene import SupportPlane
 Array = NDArray[np.float64]
 
 _LOOK_CLOSER = 320
+_UNLIKE = Likeness(distance=0.006, angle_deg=12.0)
 _LEAST_ALIGNMENT = 0.5
 _TOUCHES = 0.8
 
@@ -83,18 +84,21 @@ class GraspProposer:
         rejected: Counter[str] = Counter()
         rng = np.random.default_rng(request.seed)
         placed = _candidates(workspace, hand, request.samples, rng, rejected)
-        rows = self._judge(workspace, hand, placed, rejected)
+        rows, on_focus = self._judge(workspace, hand, placed, rejected)
         left_out = {reason: count for reason, count in sorted(rejected.items()) if count}
         return ProposeResponse(
-            grasps=rows, considered=len(rows) + sum(left_out.values()), rejected=left_out
+            grasps=rows,
+            on_focus=on_focus,
+            considered=len(rows) + sum(left_out.values()),
+            rejected=left_out,
         )
 
     def _judge(
         self, workspace: Workspace, hand: Hand, placed: Placements, rejected: Counter[str]
-    ) -> Array:
-        """Return grasp rows (G, 9) in the request's frame."""
+    ) -> tuple[Array, Array]:
+        """Return grasp rows (G, 9) in the request's frame, and what they hold in focus (G, 3)."""
         if not len(placed):
-            return np.empty((0, 9))
+            return np.empty((0, 9)), np.empty((0, 3))
         contacts = find_contacts(workspace, hand, placed)
         tips, palm = support_clearance(contacts.placed, hand, contacts.opening, workspace)
         failures = {
@@ -131,13 +135,13 @@ class GraspProposer:
         scores: Array,
         order: NDArray[np.intp],
         rejected: Counter[str],
-    ) -> Array:
+    ) -> tuple[Array, Array]:
         centres = tool_centre(contacts.placed, hand)[order]
         rotations = upright(contacts.placed.rotation[order])
         kept = distinct(centres, rotations, self._settings.max_grasps)
         rejected["duplicate"] += len(order) - len(kept)
         motion = workspace.outer_from_work
-        return np.column_stack(
+        rows = np.column_stack(
             [
                 transform_points(motion, centres[kept]),
                 quaternion_from_matrix(motion[:3, :3] @ rotations[kept]).reshape(-1, 4),
@@ -145,6 +149,10 @@ class GraspProposer:
                 scores[order][kept],
             ]
         )
+        shares = np.column_stack(
+            [contacts.in_focus, contacts.left_in_focus, contacts.right_in_focus]
+        )
+        return rows, shares[order][kept]
 
 
 def upright(rotations: Array) -> Array:
@@ -184,5 +192,7 @@ def _candidates(
     if len(placed) <= _LOOK_CLOSER:
         return placed
     order = np.argsort(-promise(workspace, hand, placed), kind="stable")
-    rejected["less_promising"] += len(order) - _LOOK_CLOSER
-    return placed.take(np.sort(order[:_LOOK_CLOSER]))
+    centres, rotations = tool_centre(placed, hand)[order], placed.rotation[order]
+    kept = order[distinct(centres, rotations, _LOOK_CLOSER, _UNLIKE)]
+    rejected["less_promising"] += len(order) - len(kept)
+    return placed.take(np.sort(kept))

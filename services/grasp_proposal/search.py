@@ -34,7 +34,7 @@ _GOOD_ENGAGEMENT = 0.022
 def search(
     workspace: Workspace, hand: Hand, points: Array, hands: Hands, rejected: Counter[str]
 ) -> Placements:
-    """Return at most one placement per hand: the depth that holds the part best.
+    """Return at most two placements per hand: the depth that holds the part best, and the deepest.
 
     Parameters
     ----------
@@ -51,17 +51,17 @@ def search(
     rejected["collision_support"] += int((~hands.possible).sum())
     rejected["collision_support"] += int((~tried.any(axis=1)).sum())
     found = place_hands(workspace.coarse, points, sample, rotation, tip, tried, _reach(hand))
-    rows = np.flatnonzero(found.best >= 0)
+    rows, which = np.nonzero(found.depth >= 0)
     rejected["too_wide"] += found.too_wide
     rejected["collision_object"] += found.collides
     rejected["other_depth_better"] += found.good - len(rows)
     return Placements(
         rotation[rows],
         origin[rows],
-        tip[rows, found.best[rows]],
-        -_BIN * (found.left[rows].astype(np.float64) + 0.5),
-        _BIN * (found.right[rows].astype(np.float64) + 0.5),
-        found.front[rows],
+        tip[rows, found.depth[rows, which]],
+        -_BIN * (found.left[rows, which].astype(np.float64) + 0.5),
+        _BIN * (found.right[rows, which].astype(np.float64) + 0.5),
+        found.front[rows, which],
     )
 
 

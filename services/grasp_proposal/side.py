@@ -19,12 +19,16 @@ _SLOPE = 0.75
 
 
 class Side(NamedTuple):
-    """Contact with one pad, each (G,): as in `Contacts`, and the mean x of its points."""
+    """Contact with one pad, each (G,): as in `Contacts`, and the mean x of its points.
+
+    `in_focus` is the share of the points touched where a grasp is wanted.
+    """
 
     alignment: Array
     sloped: Mask
     coverage: Array
     x: Array
+    in_focus: Array
 
 
 def touch_side(workspace: Workspace, closing: Array, pad: PadMarks, sign: int) -> Side:
@@ -43,4 +47,5 @@ def touch_side(workspace: Workspace, closing: Array, pad: PadMarks, sign: int) -
         alignment = np.where(pad.goes_on, alignment, np.maximum(alignment, facing))
     corner = pad.widens & (pad.strips <= 1)
     sloped = (pad.goes_on & (alignment < _SLOPE)) | corner
-    return Side(alignment, sloped, pad.strips / STRIPS, pad.x)
+    in_focus = pad.in_focus / np.maximum(pad.touched, 1)
+    return Side(alignment, sloped, pad.strips / STRIPS, pad.x, in_focus)

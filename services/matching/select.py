@@ -12,19 +12,24 @@ from shared.schemas.grasp import SelectRequest, SelectResponse
 
 _SCORE = 8
 _SAME_DISTANCE = 1e-9
+_LEAST_SHARE = 0.5
 
 
 def select_grasps(request: SelectRequest) -> SelectResponse:
-    """Return the grasps whose closest object point lies in the region, best score first.
+    """Return the grasps that hold the region, best first.
 
-    Closest is meant to the tool centre point (thesis 5.4: grasp matching).
-    Grasps of equal score keep the order of the request. `outside_region` counts
-    all candidates that hold another part, also beyond `max_grasps`.
+    The object point closest to the tool centre point must lie in the region (thesis 5.4:
+    grasp matching), and, where the request says what each grasp holds, at least half of
+    the points between the pads and half of those that each pad touches. Best is the
+    highest score times the share of the points between the pads that lie in the region:
+    the chance to lift the object by the right part, near whose border the share falls.
+    Equals keep the order of the request. `outside_region` counts all candidates that
+    hold another part, also beyond `max_grasps`.
 
     Raises
     ------
     InvalidInput
-        Non-finite points or grasps, or a region mask of another length.
+        Non-finite points or grasps, or a region mask or shares of another length.
     EmptyCloud
         Grasps, but no point that they could hold.
     """
@@ -40,14 +45,31 @@ def select_grasps(request: SelectRequest) -> SelectResponse:
     check_finite("grasps", grasps)
     if len(grasps) and not len(points):
         raise EmptyCloud(f"there are {len(grasps)} grasps, but no object points", field="points")
-    inside = holds_region(grasps[:, :3], points, region)
-    order = np.argsort(-grasps[:, _SCORE], kind="stable")
+    shares = _checked_shares(request)
+    inside = holds_region(grasps[:, :3], points, region) & (shares >= _LEAST_SHARE).all(axis=1)
+    order = np.argsort(-grasps[:, _SCORE] * shares[:, 0], kind="stable")
     chosen = order[inside[order]][: request.max_grasps]
     return SelectResponse(
         grasps=grasps[chosen],
         indices=chosen.astype(np.int32),
         outside_region=int((~inside).sum()),
     )
+
+
+def _checked_shares(request: SelectRequest) -> NDArray[np.float64]:
+    """Return the shares (G, 3); all ones where the request has none."""
+    shares, grasps = request.on_region, request.grasps
+    if shares is None:
+        return np.ones((len(grasps), 3))
+    if len(shares) != len(grasps):
+        raise InvalidInput(
+            f"on_region has {len(shares)} rows for {len(grasps)} grasps",
+            field="on_region",
+            found=len(shares),
+            allowed=len(grasps),
+        )
+    check_finite("on_region", shares)
+    return shares
 
 
 def holds_region(

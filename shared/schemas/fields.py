@@ -30,6 +30,10 @@ Labels = Annotated[NDArray[np.int16], ArrayField("int16", ("N",))]
 GraspRows = Annotated[NDArray[np.float64], ArrayField("float64", ("G", 9))]
 """x y z qx qy qz qw width score, best first."""
 
+HeldShares = Annotated[NDArray[np.float64], ArrayField("float64", ("G", 3))]
+"""For each grasp the share in [0, 1] of what it holds that lies in a region: of all points between
+the pads, of those that the left pad touches, and the right one."""
+
 Vector3 = tuple[FiniteFloat, FiniteFloat, FiniteFloat]
 Direction = Annotated[Vector3, AfterValidator(_points_somewhere)]
 """A vector that points somewhere."""

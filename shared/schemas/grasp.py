@@ -8,7 +8,16 @@ import numpy as np
 from numpy.typing import NDArray
 from pydantic import Field
 
-from shared.schemas.fields import Direction, GraspRows, Labels, Mask, Points, Quaternion, Vector3
+from shared.schemas.fields import (
+    Direction,
+    GraspRows,
+    HeldShares,
+    Labels,
+    Mask,
+    Points,
+    Quaternion,
+    Vector3,
+)
 from shared.schemas.gripper import GripperList
 from shared.schemas.primitive import Primitive
 from shared.schemas.route import Nothing, Route
@@ -45,6 +54,8 @@ class ProposeResponse(Message):
     """Collision-free antipodal candidates, best first."""
 
     grasps: GraspRows
+    on_focus: HeldShares
+    """How much of what each grasp holds is in the request's focus."""
     considered: int
     rejected: dict[str, int]
     """How many hand poses were left out, by reason."""
@@ -76,11 +87,14 @@ class SelectRequest(Message):
     points: Points
     point_region: Mask
     grasps: GraspRows
+    on_region: HeldShares | None = None
+    """How much of what each grasp holds is in the region, where the proposer says so; without
+    it, only the closest point decides."""
     max_grasps: Annotated[int, Field(ge=0, le=100)] = 10
 
 
 class SelectResponse(Message):
-    """The grasps whose closest object point lies in the region, best first."""
+    """The grasps that hold the region, best first."""
 
     grasps: GraspRows
     indices: Annotated[NDArray[np.int32], ArrayField("int32", ("G",))]
@@ -111,5 +125,5 @@ SELECT = Route(
     "/select",
     SelectRequest,
     SelectResponse,
-    "Keep the grasps whose closest object point lies in the region",
+    "Keep the grasps that hold the region",
 )

@@ -2,7 +2,7 @@ from __future__ import annotations
 
 import numpy as np
 
-from services.grasp_proposal.diversity import distinct
+from services.grasp_proposal.diversity import Likeness, distinct
 from tests.services.grasp_proposal.scenes import about_z
 
 
@@ -20,3 +20,11 @@ def test_limit_and_nothing() -> None:
     centres = np.column_stack([np.arange(20) * 0.1, np.zeros((20, 2))])
     assert distinct(centres, np.tile(np.eye(3), (20, 1, 1)), 5).tolist() == list(range(5))
     assert distinct(np.empty((0, 3)), np.empty((0, 3, 3)), 5).tolist() == []
+
+
+def test_what_is_alike_can_be_said() -> None:
+    centres = np.array([[0.0, 0, 0], [0.008, 0, 0]])
+    turns = np.tile(np.eye(3), (2, 1, 1))
+    assert distinct(centres, turns, 10, Likeness(0.006, 12.0)).tolist() == [0, 1]
+    turns[1] = about_z(np.radians(15.0))
+    assert distinct(np.zeros((2, 3)), turns, 10, Likeness(0.006, 12.0)).tolist() == [0, 1]

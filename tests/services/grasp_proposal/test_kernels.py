@@ -103,27 +103,36 @@ def place(surface: Array, tips: list[float], tried: list[bool] | None = None):  
 @pytest.mark.parametrize("width", [0.01, 0.03, 0.06])
 def test_a_hand_is_placed_around_a_bar(width: float) -> None:
     found = place(bar(width), [0.005, 0.020])
-    assert found.best[0] == 1  # the deeper one holds more
+    assert found.depth[0].tolist() == [1, -1]  # the deeper one holds more: it is both
     assert found.good == 2
-    assert found.front[0] == 0.0
-    covered = (found.left[0] + found.right[0] + 1) * REACH.bin_size
+    assert found.front[0, 0] == 0.0
+    covered = (found.left[0, 0] + found.right[0, 0] + 1) * REACH.bin_size
     assert width <= covered <= width + 2 * REACH.bin_size
 
 
 def test_hands_that_do_not_fit() -> None:
     wide = place(bar(0.09), [0.005, 0.020])
-    assert (wide.best[0], wide.too_wide, wide.good) == (-1, 2, 0)
+    assert (wide.depth[0].tolist(), wide.too_wide, wide.good) == ([-1, -1], 2, 0)
     tall = place(np.vstack([bar(0.03), bar(0.01, top=-0.045)]), [0.005, 0.020])
-    assert (tall.best[0], tall.collides, tall.good) == (-1, 2, 0)
+    assert (tall.depth[0].tolist(), tall.collides, tall.good) == ([-1, -1], 2, 0)
     skipped = place(bar(0.03), [0.005, 0.020], [True, False])
-    assert (skipped.best[0], skipped.good) == (0, 1)
+    assert (skipped.depth[0].tolist(), skipped.good) == ([0, -1], 1)
+
+
+def test_the_deepest_place_is_kept_beside_the_best() -> None:
+    found = place(bar(0.01), [0.005, REACH.good_engagement, 0.035])
+    assert found.depth[0].tolist() == [1, 2]  # 22 mm hold the part, but more may hold it better
+    stepped = np.vstack([bar(0.01), bar(0.05, top=0.03)])
+    found = place(stepped, [0.025, 0.038])
+    assert found.depth[0].tolist() == [0, 1]
+    assert found.right[0, 1] > found.right[0, 0]
 
 
 def test_a_neighbour_that_leaves_no_room_for_a_finger_belongs_to_the_part() -> None:
     near = bar(0.01) + np.array([0.0, 0.02, 0.0])
     far = bar(0.01) + np.array([0.0, 0.05, 0.0])
-    assert place(np.vstack([bar(0.03), near]), [0.02]).right[0] == 10
-    assert place(np.vstack([bar(0.03), far]), [0.02]).right[0] == 6
+    assert place(np.vstack([bar(0.03), near]), [0.02]).right[0, 0] == 10
+    assert place(np.vstack([bar(0.03), far]), [0.02]).right[0, 0] == 6
 
 
 def test_a_closer_look(rng: np.random.Generator) -> None:
@@ -155,6 +164,7 @@ def test_a_closer_look(rng: np.random.Generator) -> None:
             outwards = sign * y - (sign * y[held]).max()
             contact = held & (outwards > -0.003)
             assert pad.touched[g] == contact.sum()
+            assert pad.in_focus[g] == (contact & focus).sum()
             assert pad.strips[g] == len(set(np.floor((x[contact] / width + 0.5) * 4)))
             assert pad.x[g] == pytest.approx(x[contact].mean())
             np.testing.assert_allclose(pad.normal[g], normals[contact].sum(axis=0))

@@ -146,6 +146,18 @@ def test_grasps_are_where_the_focus_is() -> None:
     assert (best[:, :3] @ about_z(0.5)[:, 1]).min() > 0.02
 
 
+def test_says_how_much_of_what_is_held_is_in_the_focus() -> None:
+    along = CYLINDER.points @ about_z(0.5)[:, 1]
+    whole, half = propose(CYLINDER), propose(CYLINDER, focus=along > 0.0)
+    assert (whole.on_focus == 1.0).all()
+    assert half.on_focus.shape == (len(half.grasps), 3)
+    assert ((half.on_focus >= 0) & (half.on_focus <= 1)).all()
+    place = half.grasps[:, :3] @ about_z(0.5)[:, 1]
+    assert (half.on_focus[place > 0.02] > 0.95).all()
+    at_the_border = half.on_focus[np.abs(place) < 0.004]
+    assert ((at_the_border > 0.05) & (at_the_border < 0.95)).all(axis=1).any()
+
+
 def test_no_two_grasps_are_alike() -> None:
     grasps = propose(CYLINDER).grasps
     turns = rotations_of(grasps)

@@ -52,6 +52,22 @@ def test_a_point_between_two_parts_counts_as_in_the_region_whatever_the_order() 
         assert answer.indices.tolist() == [0]
 
 
+def test_the_closest_point_is_not_enough_where_the_contacts_are_known() -> None:
+    grasps = grasps_at((0.01, 0.5), (0.02, 0.5), (0.03, 0.5), (0.15, 0.5))
+    shares = np.array([[0.4, 1.0, 1.0], [1.0, 1.0, 0.4], [0.6, 0.5, 0.7], [1.0, 1.0, 1.0]])
+    answer = select(grasps, on_region=shares)
+    assert answer.indices.tolist() == [2]
+    assert answer.outside_region == 3
+
+
+def test_a_grasp_well_inside_goes_before_one_at_the_border() -> None:
+    grasps = grasps_at((0.08, 0.6), (0.01, 0.5), (0.02, 0.4))
+    shares = np.array([[0.6, 1.0, 1.0], [1.0, 1.0, 1.0], [1.0, 1.0, 1.0]])
+    answer = select(grasps, on_region=shares)
+    assert answer.indices.tolist() == [1, 2, 0]
+    assert answer.grasps[0, 8] == 0.5  # the score stays what it was: the chance to lift
+
+
 def test_nothing_in_nothing_out() -> None:
     empty = select(np.empty((0, 9)))
     assert empty.grasps.shape == (0, 9)
@@ -87,6 +103,10 @@ def test_bad_input_is_named() -> None:
         select(grasp, points=LINE * np.nan)
     with pytest.raises(InvalidInput, match="grasps must be finite"):
         select(np.full_like(grasp, np.inf))
+    with pytest.raises(InvalidInput, match="on_region has 2 rows for 1 grasps"):
+        select(grasp, on_region=np.ones((2, 3)))
+    with pytest.raises(InvalidInput, match="on_region must be finite"):
+        select(grasp, on_region=np.full((1, 3), np.nan))
     with pytest.raises(InvalidInput, match="metres"):
         select(grasp, points=LINE + 1e200)
     with pytest.raises(EmptyCloud, match="1 grasps"):
