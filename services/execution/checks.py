@@ -2,17 +2,19 @@
 
 from __future__ import annotations
 
-from collections.abc import Sequence
+from collections.abc import Mapping, Sequence
 from typing import Any
 
 import numpy as np
 from numpy.typing import NDArray
 
 from shared.errors import InvalidInput, PayloadTooLarge, UnknownGripper, WrongUnits
+from shared.grippers import choose_gripper
 from shared.schemas.execution import ExecuteRequest
+from shared.schemas.gripper import ParallelGripper, SuctionGripper
 
-GRIPPERS = ("panda",)
-"""Hands that come with an arm here."""
+ARMED = "panda"
+"""The gripper that comes with an arm here."""
 MAX_FACES = 100_000
 SIZE_RANGE = (0.004, 1.5)
 """Metres: the largest extent that an object may have."""
@@ -24,30 +26,38 @@ FURTHEST = 1e4
 """Metres: no coordinate lies beyond."""
 
 
-def check_request(request: ExecuteRequest) -> None:
-    """Raise when `request` makes no sense as an execution.
+AnyGripper = ParallelGripper | SuctionGripper
+
+
+def check_request(request: ExecuteRequest, grippers: Mapping[str, AnyGripper]) -> AnyGripper:
+    """Return the gripper of a request; raise when it makes no sense as an execution.
 
     Raises
     ------
     UnknownGripper
-        Only the Panda hand has an arm here.
+        There is no such gripper, or none of that name with an arm.
     InvalidInput, WrongUnits, PayloadTooLarge
         Says which field, what was found, what is allowed.
     """
-    if request.gripper not in GRIPPERS:
+    gripper = choose_gripper(grippers, request.gripper)
+    if request.actor == "arm" and request.gripper != ARMED:
         raise UnknownGripper(
-            f"gripper {request.gripper!r} cannot be executed; only {_listed(GRIPPERS)} has an arm",
+            f"gripper {request.gripper!r} has no arm here, only {ARMED!r} has; "
+            "actor 'hand' takes any gripper",
             field="gripper",
             found=request.gripper,
-            allowed=list(GRIPPERS),
+            allowed=[ARMED],
         )
     _check_near("pose.position", np.array(request.pose.position))
+    if request.object_pose is not None:
+        _check_near("object_pose.position", np.array(request.object_pose.position))
     if request.plane is not None:
         _check_near("plane.offset", np.array([request.plane.offset]))
     if request.vertices is not None and request.faces is not None:
         _check_mesh(request.vertices, request.faces)
     else:
         _check_primitives(request.primitives)
+    return gripper
 
 
 def _check_mesh(vertices: NDArray[Any], faces: NDArray[Any]) -> None:
@@ -117,7 +127,3 @@ def _check_direction(field: str, vector: Sequence[float]) -> None:
     length = float(np.linalg.norm(np.clip(vector, -FURTHEST, FURTHEST)))
     if length < 1e-6:
         raise InvalidInput(f"{field} has length {length:g}, it must not be zero", field=field)
-
-
-def _listed(names: Sequence[str]) -> str:
-    return ", ".join(repr(name) for name in names)

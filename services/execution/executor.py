@@ -9,6 +9,7 @@ from services.execution.checks import check_request
 from services.execution.settings import ExecutionSettings
 from services.execution.simulator import Simulator
 from shared.errors import StageUnavailable, TooBusy
+from shared.grippers import load_grippers
 from shared.schemas.execution import ExecuteRequest, ExecuteResponse
 
 
@@ -22,6 +23,7 @@ class Executor:
 
     def __init__(self, settings: ExecutionSettings) -> None:
         self._settings = settings
+        self._grippers = load_grippers(settings.grippers_dir)
         self._idle: queue.LifoQueue[Simulator | None] = queue.LifoQueue()
         for _ in range(settings.workers):
             self._idle.put(None)  # a place whose process is not started yet
@@ -32,7 +34,7 @@ class Executor:
         self._idle.put(self._ready(self._idle.get()))
 
     def execute(self, request: ExecuteRequest) -> ExecuteResponse:
-        """Replay a grasp with the Panda and say whether it lifted the object.
+        """Replay a grasp with arm or hand and say whether it lifted the object.
 
         The same request always gets the same answer; `request.seed` changes
         nothing, for nothing here is random.
@@ -49,7 +51,7 @@ class Executor:
         DeadlineExceeded, StageUnavailable
             The simulation took too long, or its process died.
         """
-        check_request(request)
+        gripper = check_request(request, self._grippers)
         try:
             simulator = self._idle.get(timeout=self._settings.queue_wait_s)
         except queue.Empty:
@@ -60,7 +62,7 @@ class Executor:
             ) from None
         try:
             simulator = self._ready(simulator)
-            return simulator.run(request, self._limit_s(request))
+            return simulator.run(request, gripper, self._limit_s(request))
         finally:
             self._give_back(simulator)
 

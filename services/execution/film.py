@@ -66,8 +66,8 @@ def surfaces(request: ExecuteRequest, scene: Scene, body: RigidBody) -> list[Sur
     vertices, faces = request.vertices, request.faces
     if vertices is None or faces is None or len(faces) > MAX_DRAWN_FACES:
         return [Surface(part.vertices, part.faces, OBJECT) for part in body.parts]
-    body_from_request = inverse(body.world_from_body) @ scene.world_from_request
-    placed = transform_points(body_from_request, vertices)
+    body_from_mesh = inverse(body.world_from_body) @ scene.world_from_mesh
+    placed = transform_points(body_from_mesh, vertices)
     chosen = np.zeros(len(faces), dtype=bool) if request.highlight is None else request.highlight
     return [
         Surface(placed, faces[which], colour)

@@ -2,6 +2,7 @@
 
 from __future__ import annotations
 
+from collections.abc import Sequence
 from typing import NamedTuple
 
 import numpy as np
@@ -44,11 +45,41 @@ class Held(NamedTuple):
     standing: bool
 
 
-def too_wide(width: float, max_opening: float) -> Verdict:
+def too_wide(width: float, gripper: str, max_opening: float) -> Verdict:
     """Return the verdict on a grasp that the hand cannot open for."""
     return Verdict(
         "unreachable",
-        f"the grasp needs an opening of {mm(width)}, the Panda hand opens to {mm(max_opening)}",
+        f"the grasp needs an opening of {mm(width)}, {gripper} opens to {mm(max_opening)}",
+    )
+
+
+def palm_on_table() -> Verdict:
+    """Return the verdict on a palm that comes down on the table."""
+    return Verdict(
+        "collision_with_table", "the palm touched the table during approach, before anything closed"
+    )
+
+
+def closed_on_nothing(opening: float) -> Verdict:
+    """Return the verdict on fingers that closed (to `opening` metres) beside the object."""
+    return Verdict("missed", f"the fingers closed to {mm(opening)}: on nothing")
+
+
+def slipped(where: Outcome, touching: Sequence[str], standing: bool, rise: float) -> Verdict:
+    """Return the verdict on a free hand that lost the object, or part of its hold."""
+    hold = f"only {touching[0]} still touches it" if len(touching) == 1 else "nothing holds it"
+    if len(touching) == 2:
+        hold = "it is between the fingers"
+    table = " and it touches the table" if standing else ""
+    return Verdict(where, f"in the end {hold}{table}; its centre rose by {mm(rise)}")
+
+
+def kept(how: Outcome, rise: float, opening: float) -> Verdict:
+    """Return the verdict on a free hand that kept the object to the end."""
+    what = "rose" if how == "lifted" else "was lifted, shaken and tilted; it rose"
+    return Verdict(
+        how,
+        f"the object {what} by {mm(rise)} and stayed between the fingers, {mm(opening)} apart",
     )
 
 

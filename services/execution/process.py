@@ -14,15 +14,19 @@ import sys
 from multiprocessing.connection import Connection
 
 import orjson
+from pydantic import TypeAdapter
 
 from shared.errors import InternalError, SpargeError
 from shared.schemas.execution import ExecuteRequest
+from shared.schemas.gripper import Gripper, ParallelGripper, SuctionGripper
 from shared.wire import NPZ, decode, encode
 
 READY = b"ready"
 ANSWER, FAILURE = b"A", b"F"
 GRACE_S = 2
 """The alarm that ends a stuck simulation rings this much after the parent's own limit."""
+
+GRIPPER: TypeAdapter[ParallelGripper | SuctionGripper] = TypeAdapter(Gripper)
 
 log = logging.getLogger("sparge.execution")
 
@@ -42,22 +46,23 @@ def main() -> None:
         pipe.send_bytes(READY)
         while True:
             limit_s = int(pipe.recv_bytes())
+            gripper = pipe.recv_bytes()
             request = pipe.recv_bytes()
             signal.alarm(limit_s + GRACE_S)  # default action: end the process, even inside C
-            answer = respond(request)
+            answer = respond(gripper, request)
             signal.alarm(0)
             pipe.send_bytes(answer)
     except (EOFError, BrokenPipeError, ConnectionResetError):
         return
 
 
-def respond(request: bytes) -> bytes:
-    """Return the marked answer, or the marked error envelope, to an npz request."""
+def respond(gripper: bytes, request: bytes) -> bytes:
+    """Return the marked answer, or the marked error envelope; gripper in JSON, request in npz."""
     from services.execution.protocol import execute
 
     try:
         message = decode(ExecuteRequest, request, NPZ, max_unpacked_bytes=sys.maxsize)
-        return ANSWER + encode(execute(message), NPZ)
+        return ANSWER + encode(execute(message, GRIPPER.validate_json(gripper)), NPZ)
     except SpargeError as error:
         failure = error
     except Exception:

@@ -11,8 +11,11 @@ from numpy.typing import NDArray
 from services.execution.arm import FINGERS, HAND, HOME, MAX_OPENING, Arm
 from services.execution.body import rigid_body
 from services.execution.bullet import TIME_STEP, physics
+from services.execution.checks import ARMED
 from services.execution.film import film
+from services.execution.flying_hand import FlyingHand
 from services.execution.hand import lowest_point
+from services.execution.hand_trial import HandTrial
 from services.execution.outcome import (
     Held,
     Verdict,
@@ -32,9 +35,12 @@ from services.execution.placement import (
     shifted,
 )
 from services.execution.recording import Recorder
-from services.execution.scene import scene_from_request
+from services.execution.scene import Scene, scene_from_request
+from services.execution.waypoints import approach
 from services.execution.world import SETTLE_S, World
+from shared.errors import InvalidInput
 from shared.schemas.execution import ExecuteRequest, ExecuteResponse, Phase
+from shared.schemas.gripper import ParallelGripper, SuctionGripper
 
 Array = NDArray[np.float64]
 
@@ -48,6 +54,7 @@ PRESS_FORCE = 30.0
 """Newtons, mean over `FORCE_WINDOW` steps: the hand presses instead of moving in."""
 FORCE_WINDOW = 24
 PROPPED = "; the object, which would not stand by itself, was propped up until it was gripped"
+LIFTED = ("lifted", "held", "slipped_in_shake")
 PUSHED_DISTANCE = 0.04
 PUSHED_ANGLE = np.radians(45.0)
 
@@ -58,7 +65,7 @@ def warm_up() -> None:
         Arm(bullet)
 
 
-def execute(request: ExecuteRequest) -> ExecuteResponse:
+def execute(request: ExecuteRequest, gripper: ParallelGripper | SuctionGripper) -> ExecuteResponse:
     """Replay a checked request in a fresh world and say what happened.
 
     Raises
@@ -67,8 +74,12 @@ def execute(request: ExecuteRequest) -> ExecuteResponse:
         The object has no volume, or lies below the plane.
     """
     scene = scene_from_request(request)
-    if scene.width > MAX_OPENING:
-        return _refused(too_wide(scene.width, MAX_OPENING))
+    if isinstance(gripper, SuctionGripper):
+        raise InvalidInput("suction is not implemented yet", field="gripper")
+    if scene.width > gripper.max_opening:
+        return _refused(too_wide(scene.width, gripper.name, gripper.max_opening))
+    if request.actor == "hand" or gripper.name != ARMED:
+        return _by_hand(request, scene, gripper)
     opening = min(scene.width + OPENING_MARGIN, MAX_OPENING)
     grasp = scene.world_from_grasp
     pregrasp = shifted(grasp, -PREGRASP_DISTANCE * grasp[:3, 2])
@@ -92,10 +103,33 @@ def execute(request: ExecuteRequest) -> ExecuteResponse:
     return answer.model_copy(update={"animation": animation})
 
 
+def _by_hand(request: ExecuteRequest, scene: Scene, gripper: ParallelGripper) -> ExecuteResponse:
+    """Replay a request with the gripper alone."""
+    grasp = scene.world_from_grasp
+    opening = min(scene.width + OPENING_MARGIN, gripper.max_opening)
+    with physics() as bullet:
+        world = World(bullet, rigid_body(scene.parts))
+        world.settle(propped=request.vertices is None)
+        hand = FlyingHand(bullet, gripper, approach(grasp).start, opening)
+        propped = world.propped
+        trial = HandTrial(world, hand, grasp, request.strict)
+        verdict = trial.verdict()
+        rise = world.rise()
+    return ExecuteResponse(
+        success=verdict.outcome == ("held" if request.strict else "lifted"),
+        lifted=verdict.outcome in LIFTED,
+        outcome=verdict.outcome,
+        message=verdict.message + (PROPPED if propped else ""),
+        lift_height=round(rise, 4),
+        phases=tuple(trial.phases),
+    )
+
+
 def _refused(verdict: Verdict) -> ExecuteResponse:
     """Return the answer to a grasp that is not worth simulating."""
     return ExecuteResponse(
         success=False,
+        lifted=False,
         outcome=verdict.outcome,
         message=verdict.message,
         lift_height=0.0,
@@ -147,6 +181,7 @@ class Run:
             rise = 0.0
         return ExecuteResponse(
             success=verdict.outcome == "lifted",
+            lifted=verdict.outcome == "lifted",
             outcome=verdict.outcome,
             message=verdict.message + (PROPPED if propped else ""),
             lift_height=round(rise, 4),

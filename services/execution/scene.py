@@ -20,6 +20,8 @@ from shared.schemas.execution import ExecuteRequest
 
 Array = NDArray[np.float64]
 
+DIP = 0.002
+"""Metres below the table from which an object is raised: no plane is known better."""
 STEEP = 0.3
 """Below this horizontal share of the approach direction, a grasp comes from above."""
 
@@ -30,8 +32,8 @@ class Scene:
 
     Attributes
     ----------
-    world_from_request : (4, 4) array
-        From the request's frame.
+    world_from_mesh : (4, 4) array
+        From the frame that the request gives the mesh in.
     world_from_grasp : (4, 4) array
         Its approach (+z) has no component along world y, unless it is nearly vertical.
     width : float
@@ -40,7 +42,7 @@ class Scene:
         The object in the world's frame, nothing of it below z = 0.
     """
 
-    world_from_request: Array
+    world_from_mesh: Array
     world_from_grasp: Array
     width: float
     parts: tuple[ConvexPart, ...]
@@ -59,21 +61,39 @@ def scene_from_request(request: ExecuteRequest) -> Scene:
     InvalidInput
         The whole object lies below the plane.
     """
-    parts = (
-        parts_of_mesh(request.vertices, request.faces)
-        if request.vertices is not None and request.faces is not None
-        else parts_of_primitives(request.primitives)
-    )
+    if request.vertices is not None and request.faces is not None:
+        parts = parts_of_mesh(request.vertices, request.faces)
+    else:
+        parts = parts_of_primitives(request.primitives)
+    frame_from_mesh = np.eye(4)
+    if request.object_pose is not None:
+        place = request.object_pose
+        frame_from_mesh = matrix_from_pose(place.position, place.quaternion)
+        parts = [part.moved(frame_from_mesh) for part in parts]
     frame_from_grasp = matrix_from_pose(request.pose.position, request.pose.quaternion)
     world_from_frame = _world_from_frame(request, frame_from_grasp, parts)
-    standing = [part.moved(world_from_frame).above(0.0) for part in parts]
-    solid = tuple(part for part in standing if part is not None)
+    solid = _standing([part.moved(world_from_frame) for part in parts])
     if not solid:
         raise InvalidInput(
             "the object lies below the support plane: does plane.normal point to the objects?",
             field="plane",
         )
-    return Scene(world_from_frame, world_from_frame @ frame_from_grasp, request.width, solid)
+    return Scene(
+        world_from_frame @ frame_from_mesh,
+        world_from_frame @ frame_from_grasp,
+        request.width,
+        solid,
+    )
+
+
+def _standing(parts: list[ConvexPart]) -> tuple[ConvexPart, ...]:
+    """Return the parts above z = 0: raised as a whole when they dip a little, cut otherwise."""
+    dip = -min(float(part.vertices[:, 2].min()) for part in parts)
+    if 0 < dip <= DIP:
+        up = pose_matrix([0.0, 0.0, dip], np.eye(3))
+        return tuple(part.moved(up) for part in parts)
+    above = (part.above(0.0) for part in parts)
+    return tuple(part for part in above if part is not None)
 
 
 def _world_from_frame(

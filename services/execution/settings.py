@@ -4,10 +4,11 @@ from __future__ import annotations
 
 from pydantic import Field
 
-from shared.settings import ServiceSettings, environment
+from shared.grippers import GripperSettings
+from shared.settings import environment
 
 
-class ExecutionSettings(ServiceSettings):
+class ExecutionSettings(GripperSettings):
     """Limits of the simulation; its physics is fixed in the domain modules.
 
     Attributes

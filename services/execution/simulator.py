@@ -13,6 +13,7 @@ import orjson
 from services.execution.process import ANSWER, READY
 from shared.errors import DeadlineExceeded, InternalError, StageUnavailable, error_from_envelope
 from shared.schemas.execution import ExecuteRequest, ExecuteResponse
+from shared.schemas.gripper import ParallelGripper, SuctionGripper
 from shared.wire import NPZ, decode, encode
 
 START_LIMIT_S = 60.0
@@ -57,7 +58,12 @@ class Simulator:
     def alive(self) -> bool:
         return self._process.poll() is None
 
-    def run(self, request: ExecuteRequest, limit_s: float) -> ExecuteResponse:
+    def run(
+        self,
+        request: ExecuteRequest,
+        gripper: ParallelGripper | SuctionGripper,
+        limit_s: float,
+    ) -> ExecuteResponse:
         """Return the answer of the simulation.
 
         Raises
@@ -72,6 +78,7 @@ class Simulator:
         self.executions += 1
         try:
             self._pipe.send_bytes(str(ceil(limit_s)).encode())
+            self._pipe.send_bytes(gripper.model_dump_json().encode())
             self._pipe.send_bytes(encode(request, NPZ))
             if not self._pipe.poll(limit_s):
                 self.stop()

@@ -53,8 +53,8 @@ class World:
         """Simulate one time step."""
         self.bullet.stepSimulation()
 
-    def settle(self) -> None:
-        """Let the object come to rest; prop it up if it would rather fall or roll.
+    def settle(self, propped: bool = True) -> None:
+        """Let the object come to rest; where `propped`, prop it up if it would fall or roll.
 
         A shape recovered from one view may not balance although the real object
         does. The prop is a joint to the world that bears the object's weight and
@@ -63,7 +63,7 @@ class World:
         for _ in range(round(SETTLE_S / TIME_STEP)):
             self.step()
         moved, turned = self.displacement(self.body.world_from_body)
-        if moved > RESTLESS_M or turned > RESTLESS_RAD:
+        if propped and (moved > RESTLESS_M or turned > RESTLESS_RAD):
             self._prop_up()
         self.rest = self.world_from_body
 

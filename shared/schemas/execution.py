@@ -36,8 +36,12 @@ class ExecuteRequest(Message):
     width: Annotated[FiniteFloat, Field(ge=0)]
     primitives: Annotated[tuple[SuperquadricVector, ...], Field(max_length=64)] = ()
     vertices: Points | None = None
-    """Mesh vertices in metres, in the same frame as the grasp."""
+    """Mesh vertices in metres, in the same frame as the grasp, or in the mesh's own frame
+    where `object_pose` is given."""
     faces: Annotated[NDArray[np.int32], ArrayField("int32", ("F", 3))] | None = None
+    object_pose: Pose | None = None
+    """Where the mesh's own frame is in the frame of the grasp. Many requests about one mesh
+    are answered sooner with it: a mesh is prepared once, as long as its arrays stay the same."""
     plane: SupportPlane | None = None
     up: Direction | None = None
     gripper: str = "panda"
@@ -67,6 +71,8 @@ class ExecuteRequest(Message):
             raise ValueError("highlight needs one entry for every face of the mesh")
         if self.plane is None and self.up is None:
             raise ValueError("give plane or up, so that gravity has a direction")
+        if self.object_pose is not None and self.vertices is None:
+            raise ValueError("object_pose places a mesh; primitives are given where they are")
         return self
 
     @staticmethod
@@ -86,10 +92,14 @@ class Phase(Message):
 
 
 class ExecuteResponse(Message):
-    """What happened when the arm tried."""
+    """What happened when the arm, or the hand alone, tried."""
 
     success: bool
+    """All that was asked for went well: the lift and, where `strict`, shake and tilt."""
+    lifted: bool
+    """The object was lifted and held for a second, whatever came after."""
     outcome: Outcome
+    """`lifted`: as asked, without shake and tilt; `held`: with them."""
     message: str
     lift_height: float
     """How far the object rose, in metres."""
@@ -104,5 +114,5 @@ EXECUTE = Route(
     "/execute",
     ExecuteRequest,
     ExecuteResponse,
-    "Drive the Panda arm to a grasp in PyBullet, close, lift, and say what happened",
+    "Carry out a grasp in PyBullet, with the Panda arm or a gripper alone, and say what happened",
 )

@@ -96,6 +96,7 @@ def trial(pose: str = "flat", outcome: Outcome | None = "lifted", film: bytes = 
         )
         executed = ExecuteResponse(
             success=outcome == "lifted",
+            lifted=outcome == "lifted",
             outcome=outcome,
             message="",
             lift_height=0.3 if outcome == "lifted" else -0.05,

@@ -8,10 +8,12 @@ import numpy as np
 from numpy.typing import NDArray
 from scipy.spatial.transform import Rotation
 
+from services.execution import protocol
 from services.execution.convex import convex_hull
 from shared.geometry.rotation import quaternion_from_matrix
 from shared.geometry.se3 import matrix_from_pose, pose_from_matrix, pose_matrix
-from shared.schemas.execution import ExecuteRequest
+from shared.grippers import load_grippers
+from shared.schemas.execution import ExecuteRequest, ExecuteResponse
 from shared.schemas.grasp import Pose
 from shared.schemas.scene import SupportPlane
 
@@ -23,6 +25,11 @@ CAMERA_FROM_WORLD = pose_matrix(
 )
 STANDING_SUPERQUADRIC = (0.1, 1.0, 0.03, 0.03, 0.08, 0.0, 0.0, 0.08, 0.0, 0.0, 0.0, 1.0)
 """Like a cylinder: 6 cm thick, 16 cm tall."""
+
+
+def execute(asked: ExecuteRequest) -> ExecuteResponse:
+    """Carry a request out with the gripper that it names."""
+    return protocol.execute(asked, load_grippers()[asked.gripper])
 
 
 def hull_mesh(points: Array) -> Mesh:

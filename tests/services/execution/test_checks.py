@@ -8,11 +8,18 @@ import pytest
 
 from services.execution.checks import MAX_FACES, check_request
 from shared.errors import InvalidInput, PayloadTooLarge, SpargeError, UnknownGripper, WrongUnits
+from shared.grippers import load_grippers
+from shared.schemas.execution import ExecuteRequest
 from shared.schemas.grasp import Pose
 from tests.services.execution.scenes import STANDING_SUPERQUADRIC, box, from_above, request
 
 BOX = box((0.02, 0.03, 0.04), (0.0, 0.0, 0.04))
 DOWN = from_above()
+GRIPPERS = load_grippers()
+
+
+def checked(asked: ExecuteRequest) -> str:
+    return check_request(asked, GRIPPERS).name
 
 
 def replaced(**parameters: float) -> tuple[float, ...]:
@@ -22,14 +29,20 @@ def replaced(**parameters: float) -> tuple[float, ...]:
 
 
 def test_a_sensible_request_passes() -> None:
-    check_request(request((0, 0, 0.05), DOWN, BOX))
-    check_request(request((0, 0, 0.05), DOWN, primitives=(STANDING_SUPERQUADRIC,)))
+    checked(request((0, 0, 0.05), DOWN, BOX))
+    checked(request((0, 0, 0.05), DOWN, primitives=(STANDING_SUPERQUADRIC,)))
 
 
 @pytest.mark.parametrize(
     ("changes", "kind", "says"),
     [
-        ({"gripper": "robotiq_2f_85"}, UnknownGripper, "only 'panda'"),
+        ({"gripper": "soft"}, UnknownGripper, "known are panda"),
+        ({"gripper": "tiago", "actor": "arm"}, UnknownGripper, "only 'panda' has"),
+        (
+            {"object_pose": Pose(position=(0, 1e300, 0), quaternion=(0, 0, 0, 1))},
+            InvalidInput,
+            "object_pose.position",
+        ),
         (
             {"pose": Pose(position=(1e300, 0, 0), quaternion=(0, 0, 0, 1))},
             InvalidInput,
@@ -46,7 +59,7 @@ def test_what_is_wrong_with_a_request(
     changes: dict[str, Any], kind: type[SpargeError], says: str
 ) -> None:
     with pytest.raises(kind, match=re.escape(says)):
-        check_request(request((0, 0, 0.05), DOWN, BOX, **changes))
+        checked(request((0, 0, 0.05), DOWN, BOX, **changes))
 
 
 @pytest.mark.parametrize(
@@ -66,9 +79,15 @@ def test_what_is_wrong_with_a_request(
 def test_what_is_wrong_with_a_primitive(parameters: dict[str, float], says: str) -> None:
     primitives = (STANDING_SUPERQUADRIC, replaced(**parameters))
     with pytest.raises(InvalidInput, match=re.escape(says)):
-        check_request(request((0, 0, 0.05), DOWN, primitives=primitives))
+        checked(request((0, 0, 0.05), DOWN, primitives=primitives))
+
+
+def test_any_gripper_may_fly() -> None:
+    asked = request((0, 0, 0.05), DOWN, BOX, gripper="tiago")
+    assert checked(asked) == "tiago"
+    assert checked(asked.model_copy(update={"actor": "hand"})) == "tiago"
 
 
 def test_a_vertex_that_no_face_uses_does_not_count() -> None:
     vertices = np.vstack([BOX[0], [[500.0, 0.0, 0.0]]])
-    check_request(request((0, 0, 0.05), DOWN, (vertices, BOX[1])))
+    checked(request((0, 0, 0.05), DOWN, (vertices, BOX[1])))

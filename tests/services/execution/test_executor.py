@@ -62,7 +62,7 @@ def test_errors_of_the_simulation_come_through(executor: Executor) -> None:
 
 def test_nothing_is_printed(executor: Executor, capfd: pytest.CaptureFixture[str]) -> None:
     simulator = Simulator()
-    simulator.run(LIFTED, 30.0)
+    simulator.run(LIFTED, load_grippers()["panda"], 30.0)
     simulator.stop()
     executor.execute(LIFTED)
     assert capfd.readouterr() == ("", "")

@@ -21,7 +21,6 @@ from services.execution.film import (
     film,
     surfaces,
 )
-from services.execution.protocol import execute
 from services.execution.recording import FRAME_S, Recorder, Recording, Snapshot
 from services.execution.scene import scene_from_request
 from services.execution.scenery import BACKDROP, Scenery, Surface, scenery
@@ -35,6 +34,7 @@ from tests.services.execution.scenes import (
     STANDING_SUPERQUADRIC,
     box,
     cylinder,
+    execute,
     from_above,
     from_side,
     request,

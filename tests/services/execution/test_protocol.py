@@ -6,13 +6,13 @@ import numpy as np
 import pytest
 
 from services.execution.placement import LIFT_HEIGHT
-from services.execution.protocol import execute
 from shared.schemas.execution import ExecuteResponse
 from tests.services.execution.scenes import (
     CAMERA_FROM_WORLD,
     STANDING_SUPERQUADRIC,
     box,
     cylinder,
+    execute,
     from_above,
     from_side,
     hull_mesh,

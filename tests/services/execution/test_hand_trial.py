@@ -1,0 +1,129 @@
+"""A gripper that flies by itself: each outcome, made to happen by physics."""
+
+from __future__ import annotations
+
+import numpy as np
+import pytest
+
+from shared.geometry.se3 import pose_from_matrix
+from shared.grippers import load_grippers
+from shared.schemas.execution import ExecuteRequest, ExecuteResponse
+from shared.schemas.grasp import Pose
+from shared.schemas.gripper import ParallelGripper
+from tests.services.execution.scenes import (
+    CAMERA_FROM_WORLD,
+    STANDING_SUPERQUADRIC,
+    box,
+    cylinder,
+    execute,
+    from_above,
+    from_side,
+    hull_mesh,
+    request,
+)
+
+GRIPPERS = load_grippers()
+PARALLEL = [name for name, each in GRIPPERS.items() if isinstance(each, ParallelGripper)]
+LIFT = ("settle", "approach", "close", "lift", "hold")
+
+
+def phases(answer: ExecuteResponse) -> tuple[str, ...]:
+    return tuple(phase.name for phase in answer.phases)
+
+
+def by_hand(asked: ExecuteRequest, **changes: object) -> ExecuteResponse:
+    return execute(asked.model_copy(update={"actor": "hand", **changes}))
+
+
+@pytest.mark.parametrize("name", PARALLEL)
+def test_every_gripper_holds_a_block_that_fits(name: str) -> None:
+    gripper = GRIPPERS[name]
+    assert isinstance(gripper, ParallelGripper)
+    wide = 0.8 * gripper.max_opening
+    block = box((0.02, wide / 2, 0.05), (0, 0, 0.05))
+    asked = request((0, 0, 0.08), from_above(), block, width=wide, gripper=name, strict=True)
+    answer = by_hand(asked)
+    assert answer.outcome == "held", answer.message
+    assert answer.success
+    assert answer.lifted
+    assert phases(answer) == (*LIFT, "shake", "tilt")
+    plain = by_hand(asked, strict=False)
+    assert plain.outcome == "lifted"
+    assert plain.success
+    assert phases(plain) == LIFT
+    wider = by_hand(asked, width=1.01 * gripper.max_opening)
+    assert wider.outcome == "unreachable"
+    assert name in wider.message
+
+
+def test_a_hand_reaches_where_no_arm_could() -> None:
+    asked = request((0, 0, 0.09), from_side(), cylinder())
+    for yaw in np.arange(4) * np.pi / 2:
+        answer = by_hand(request((0, 0, 0.09), from_side(yaw), cylinder()))
+        assert answer.outcome == "lifted", answer.message
+    assert by_hand(asked, strict=True).outcome == "held"
+
+
+def test_beside_the_object_is_missed() -> None:
+    answer = by_hand(request((0.12, 0, 0.12), from_above(), cylinder()))
+    assert answer.outcome == "missed"
+    assert phases(answer) == LIFT[:3]
+    assert not answer.lifted
+
+
+def test_a_palm_that_comes_down_on_the_table() -> None:
+    low = box((0.02, 0.02, 0.01), (0, 0, 0.01))
+    answer = by_hand(request((0, 0, 0.015), from_side(), low, width=0.04))
+    assert answer.outcome == "collision_with_table", answer.message
+
+
+def test_a_palm_that_presses_on_the_object() -> None:
+    tall = box((0.02, 0.02, 0.05), (0, 0, 0.05))
+    answer = by_hand(request((0, 0, 0.04), from_above(), tall, width=0.04))
+    assert answer.outcome == "pushed_away"
+    assert "palm pressed on the object" in answer.message
+
+
+def test_a_hand_that_sweeps_the_object_along_pushes_it() -> None:
+    answer = by_hand(request((0.05, 0.045, 0.09), from_side(), cylinder()))
+    assert answer.outcome == "pushed_away", answer.message
+
+
+def test_a_slope_steeper_than_the_friction_cone_slips() -> None:
+    pyramid = hull_mesh(
+        np.array([[-1, -1, 0], [1, -1, 0], [1, 1, 0], [-1, 1, 0], [0, 0, 1.25]]) * 0.04
+    )
+    answer = by_hand(request((0, 0, 0.03), from_above(), pyramid, width=0.07))
+    assert answer.outcome in ("slipped_in_lift", "missed")
+    assert not answer.lifted
+
+
+def test_a_mesh_in_its_own_frame_is_the_same_mesh() -> None:
+    mesh, moved = cylinder(), request((0, 0, 0.09), from_side(), cylinder(), strict=True)
+    seen = request((0, 0, 0.09), from_side(), mesh, seen_from=CAMERA_FROM_WORLD, strict=True)
+
+    position, quaternion = pose_from_matrix(CAMERA_FROM_WORLD)
+    placed = seen.model_copy(
+        update={
+            "vertices": mesh[0],
+            "object_pose": Pose(position=tuple(position), quaternion=tuple(quaternion)),
+        }
+    )
+    answers = [by_hand(each) for each in (moved, seen, placed)]
+    assert {answer.outcome for answer in answers} == {"held"}
+    for answer in answers[1:]:
+        assert answer.lift_height == pytest.approx(answers[0].lift_height, abs=3e-3)
+
+
+def test_recovered_primitives_stand_for_the_object() -> None:
+    answer = by_hand(
+        request((0, 0, 0.1), from_side(), primitives=(STANDING_SUPERQUADRIC,)), strict=True
+    )
+    assert answer.outcome == "held", answer.message
+
+
+def test_the_same_request_gives_the_same_answer() -> None:
+    asked = request((0, 0, 0.09), from_side(), cylinder(), seen_from=CAMERA_FROM_WORLD, strict=True)
+    first = by_hand(asked)
+    by_hand(request((0.12, 0, 0.12), from_above(), cylinder()))
+    assert by_hand(asked).model_dump_json() == first.model_dump_json()
