@@ -21,6 +21,7 @@ from shared.errors import (
     TooBusy,
     UnknownGripper,
 )
+from shared.grippers import load_grippers
 from tests.services.execution.scenes import cylinder, from_above, from_side, request
 
 LIFTED = request((0, 0, 0.09), from_side(), cylinder())
