@@ -165,6 +165,7 @@ class Pipeline:
                 viewpoint=parameters.viewpoint,
                 plane=scene.plane,
                 up=scene.up,
+                obstacle_points=scene.obstacle_points,
                 method=parameters.method,
                 preset=None if parameters.method == "parts" else self._settings.preset,
                 parameters=parameters.recovery,

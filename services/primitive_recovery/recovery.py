@@ -12,7 +12,7 @@ from services.primitive_recovery.parts.cutter import Cutter
 from services.primitive_recovery.parts.recovery import recover_parts
 from services.primitive_recovery.rehearsal import rehearsal
 from services.primitive_recovery.settings import PrimitiveRecoverySettings
-from services.primitive_recovery.validation import checked_cloud
+from services.primitive_recovery.validation import checked_cloud, checked_obstacles
 from shared.schemas.primitive import (
     PRESETS,
     Method,
@@ -47,11 +47,12 @@ class PrimitiveRecovery:
         Raises
         ------
         EmptyCloud, DegenerateCloud, InvalidInput, WrongUnits, PayloadTooLarge
-            See `checked_cloud`.
+            See `checked_cloud` and `checked_obstacles`.
         """
         points = checked_cloud(request.points, self._settings.max_points)
         if self._method_of(request) == "parts":
-            return recover_parts(request, points, self._cutter, self._classifier)
+            others = checked_obstacles(request.obstacle_points, self._settings.max_points)
+            return recover_parts(request, points, others, self._cutter, self._classifier)
         return self._by_ems(request, points)
 
     def _method_of(self, request: RecoverRequest) -> Method:

@@ -21,6 +21,14 @@ def rehearsal() -> Iterator[RecoverRequest]:
     ball_and_rod = np.vstack([ball, rod + np.array([0.0, 0.0, 0.13])])
     for method in ("ems", "parts"):
         yield RecoverRequest(points=ball_and_rod, method=method, viewpoint=(1.0, 0.0, 0.0))
+    # Something in front of the rod.
+    card = np.stack(np.meshgrid(0.2, np.arange(-5, 6), np.arange(20, 26)), axis=-1).reshape(-1, 3)
+    yield RecoverRequest(
+        points=ball_and_rod[np.abs(ball_and_rod[:, 2] - 0.14) > 0.01],
+        method="parts",
+        viewpoint=(1.0, 0.0, 0.0),
+        obstacle_points=card * np.array([1.0, 0.005, 0.005]),
+    )
     # The near side of a cone that stands on a table: a part with a taper.
     angle, height = rng.uniform(-1.4, 1.4, _POINTS), rng.uniform(0.0, 0.2, _POINTS)
     radius = 0.08 - 0.35 * height

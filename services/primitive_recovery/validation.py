@@ -61,6 +61,34 @@ def checked_cloud(points: Array, max_points: int) -> Array:
     return np.array(points, dtype=np.float64, order="C")
 
 
+def checked_obstacles(points: Array | None, max_points: int) -> Array | None:
+    """Return the points (M, 3) of other things if they can be rays of the sensor.
+
+    Raises
+    ------
+    InvalidInput, PayloadTooLarge
+        NaN or infinity; too many.
+    """
+    if points is None or not len(points):
+        return None
+    if len(points) > max_points:
+        raise PayloadTooLarge(
+            f"obstacle_points: {len(points)} found, at most {max_points} are taken; thin them out.",
+            field="obstacle_points",
+            found=len(points),
+            allowed=f"<= {max_points}",
+        )
+    bad = int((~np.isfinite(points).all(axis=1)).sum())
+    if bad:
+        raise InvalidInput(
+            f"obstacle_points: {bad} of {len(points)} rows are NaN or infinite; leave them out.",
+            field="obstacle_points",
+            found=bad,
+            allowed=0,
+        )
+    return np.array(points, dtype=np.float64, order="C")
+
+
 def flatness(points: Array) -> str | None:
     """Return what finite points (N, 3) all lie on, "a spot", "a line" or "a plane", or None."""
     centred = points - points.mean(axis=0)

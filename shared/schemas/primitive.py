@@ -116,6 +116,9 @@ class RecoverRequest(Message):
     viewpoint: Vector3 = (0.0, 0.0, 0.0)
     plane: SupportPlane | None = None
     up: Direction | None = None
+    obstacle_points: Points | None = None
+    """Visible points of other things, thin as they may be. Where they are in front of the
+    object, `parts` takes what they hide for unknown, neither object nor background."""
     method: Method | None = None
     """Without it, the service's own setting; `ems` where `preset` or `parameters` are given."""
     preset: Preset | None = None

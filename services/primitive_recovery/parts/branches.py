@@ -97,7 +97,7 @@ def branches(view: PartView) -> list[Branch]:
     metres = picture.cell * size
     near = cell_means(mask, picture.row, picture.column, view.nearness / metres)
     tall = cell_means(mask, picture.row, picture.column, view.height / metres)
-    holes = holes_of(mask)
+    holes = holes_of(mask, view.hidden.mask)
     seen: list[Mask] = []
     noise = _unevenness(near, mask)
     raw = distance_to_unset(picture.mask)
@@ -129,7 +129,9 @@ def branches(view: PartView) -> list[Branch]:
             seen.append(cells)
             row = branch_features(mask, cells, distance, holes, hole_sizes, near, tall)
             about = [share, float(kind == "depth"), float(view.is_piece), whole]
-            found.append(Branch(cells, np.concatenate([about, row]), bool(row[ENCLOSES] > 0)))
+            # Discs end a cell short of the concave corner where a branch leaves the body.
+            reach = mask & grown(cells, 1)
+            found.append(Branch(reach, np.concatenate([about, row]), bool(row[ENCLOSES] > 0)))
     return found
 
 

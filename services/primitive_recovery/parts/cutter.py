@@ -56,7 +56,9 @@ class Cutter:
         """
         side, best, worth = np.zeros(len(view.points), dtype=bool), -np.inf, -np.inf
         for axis in view.axes[:2]:
-            slices = profile(view.centred, axis, view.ray, view.height, view.spacing)
+            slices = profile(
+                view.centred, axis, view.ray, view.height, view.spacing, view.hidden.behind
+            )
             quality = self.slices(np.vstack(slice_features(slices, view)))
             quality = quality.reshape(2, -1).mean(axis=0)
             if quality.max() > best:

@@ -240,3 +240,86 @@ def cell_means(
                             around += 1
                 found[i, j] = held / around if around else overall
     return found
+
+
+_LINES = np.array([[0, 1], [1, 0], [1, 1], [1, -1], [1, 2], [2, 1], [1, -2], [2, -1]])
+
+
+@kernel
+def bridged(mask: Mask, hidden: Mask, depth: Array) -> Array:
+    """Return the depth (H, W) of hidden cells on straight lines between cells of a mask.
+
+    Along eight lines a cell looks both ways through hidden cells alone; where both looks end
+    at the mask, the cell lies between them, and the shortest such line gives its depth. 0
+    for all other cells.
+
+    Parameters
+    ----------
+    mask, hidden : (H, W) bool array
+        Without common cells.
+    depth : (H, W) array
+        Of the mask's cells, all greater than 0.
+    """
+    rows, columns = mask.shape
+    found = np.zeros((rows, columns))
+    for i in range(rows):
+        for j in range(columns):
+            if not hidden[i, j]:
+                continue
+            shortest = np.inf
+            for line in range(_LINES.shape[0]):
+                dy, dx = _LINES[line]
+                step = np.sqrt(dy * dy + dx * dx)
+                ahead, to_ahead = _look(mask, hidden, depth, i, j, dy, dx)
+                if ahead <= 0.0:
+                    continue
+                back, to_back = _look(mask, hidden, depth, i, j, -dy, -dx)
+                length = (to_ahead + to_back) * step
+                if back > 0.0 and length < shortest:
+                    shortest = length
+                    found[i, j] = (ahead * to_back + back * to_ahead) / (to_ahead + to_back)
+    return found
+
+
+@kernel
+def _look(
+    mask: Mask, hidden: Mask, depth: Array, i: int, j: int, dy: int, dx: int
+) -> tuple[float, int]:
+    """Return the depth of the first cell of the mask along a line, 0 for none, and the steps."""
+    steps = 1
+    y, x = i + dy, j + dx
+    while 0 <= y < mask.shape[0] and 0 <= x < mask.shape[1]:
+        if mask[y, x]:
+            return depth[y, x], steps
+        if not hidden[y, x]:
+            break
+        steps += 1
+        y += dy
+        x += dx
+    return 0.0, steps
+
+
+@kernel
+def nearest_of(
+    mask: Mask, cells: NDArray[np.int64], reach: NDArray[np.int64], depth: Array
+) -> Array:
+    """Return the least depth (H, W) of the squares about points, infinite where there is none.
+
+    Parameters
+    ----------
+    mask : (H, W) bool array
+        Of the picture's size.
+    cells : (M, 2) array
+        Row and column of each point, also outside of the picture.
+    reach : (M,) array
+        Half side of its square, cells.
+    depth : (M,) array
+    """
+    rows, columns = mask.shape
+    found = np.full((rows, columns), np.inf)
+    for k in range(len(depth)):
+        row, column, r = cells[k, 0], cells[k, 1], reach[k]
+        for i in range(max(row - r, 0), min(row + r + 1, rows)):
+            for j in range(max(column - r, 0), min(column + r + 1, columns)):
+                found[i, j] = min(found[i, j], depth[k])
+    return found

@@ -17,7 +17,9 @@ LEAST_RADIUS = 2.0
 """Cells: narrower gaps are lost pixels."""
 
 
-def count_holes(picture: Silhouette, labels: NDArray[np.int16]) -> tuple[int, ...]:
+def count_holes(
+    picture: Silhouette, labels: NDArray[np.int16], hidden: NDArray[np.bool_] | None = None
+) -> tuple[int, ...]:
     """Return for every part how many openings the sensor saw the background through.
 
     An opening is enclosed by the part alone; what two parts enclose together
@@ -29,15 +31,16 @@ def count_holes(picture: Silhouette, labels: NDArray[np.int16]) -> tuple[int, ..
         Of the whole object.
     labels : (N,) int16 array
         Part of every point, from 0.
+    hidden : (H, W) bool array, optional
+        Cells where something else is in front: no background was seen there.
     """
     count = int(labels.max()) + 1
     holes = [0] * count
-    mask = picture.closed
-    gaps = holes_of(mask)
+    gaps = holes_of(picture.closed, hidden)
     number = int(gaps.max())
     if number == 0:
         return tuple(holes)
-    part = np.full(mask.shape, -1, dtype=np.int16)
+    part = np.full(gaps.shape, -1, dtype=np.int16)
     part[picture.row, picture.column] = labels
     radius = distance_to_unset(gaps > 0)
     for index in range(1, number + 1):
@@ -51,14 +54,17 @@ def count_holes(picture: Silhouette, labels: NDArray[np.int16]) -> tuple[int, ..
     return tuple(holes)
 
 
-def holes_of(mask: NDArray[np.bool_]) -> NDArray[np.int32]:
+def holes_of(mask: NDArray[np.bool_], hidden: NDArray[np.bool_] | None = None) -> NDArray[np.int32]:
     """Return the number of the hole (H, W) that each cell belongs to, from 1; 0 for none.
 
     A hole is background that no path to the picture's border leaves; cells that
     touch at a corner alone are apart, as those of the mask hang together there.
+    Hidden cells (H, W) are paths, as the object may be absent there, but no hole.
     """
     found, _ = ndimage.label(~mask)
     outside = np.unique(np.concatenate([found[0], found[-1], found[:, 0], found[:, -1]]))
     found[np.isin(found, outside)] = 0
+    if hidden is not None:
+        found[hidden] = 0
     _, inverse = np.unique(found, return_inverse=True)
     return np.asarray(inverse.reshape(found.shape), dtype=np.int32)

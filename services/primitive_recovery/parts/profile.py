@@ -7,7 +7,7 @@ from dataclasses import dataclass
 import numpy as np
 from numpy.typing import NDArray
 
-from services.primitive_recovery.parts.silhouette import across
+from services.primitive_recovery.parts.projection import across
 from shared.jit import kernel
 from shared.sorting import ascending
 
@@ -16,6 +16,8 @@ Indices = NDArray[np.intp]
 
 SLICES = 64
 """Of every profile; a cut can lie between any two."""
+
+NOTHING = np.empty((0, 3))
 
 _FEWEST_SLICES = 8
 _TRIMS = np.array([0.02, 0.05, 0.05])
@@ -70,7 +72,14 @@ class Profile:
         return float(np.sqrt(max(self.width.sum() * self.step, 1e-300)))
 
 
-def profile(points: Array, axis: Array, ray: Array, height: Array, spacing: float) -> Profile:
+def profile(
+    points: Array,
+    axis: Array,
+    ray: Array,
+    height: Array,
+    spacing: float,
+    hidden: Array = NOTHING,
+) -> Profile:
     """Return the profile of points (N, 3) along a unit axis (3,), seen along a unit ray (3,).
 
     Parameters
@@ -83,6 +92,9 @@ def profile(points: Array, axis: Array, ray: Array, height: Array, spacing: floa
         Of each point above its support, metres.
     spacing : float
         About how far neighbouring points are apart, metres.
+    hidden : (U, 3) array, optional
+        Places beside the points where something else is in front. A slice that ends
+        there reaches at least so far: its edge is then where its neighbours' edges are.
     """
     towards, aside = across(axis, ray)
     towards = -towards if towards @ ray > 0 else towards
@@ -99,27 +111,63 @@ def profile(points: Array, axis: Array, ray: Array, height: Array, spacing: floa
     values = np.stack([side, height, near])
     number, ranges, depth = slice_ranges(values, index, count, _TRIMS)
     (left, right), (bottom, top), (far, close) = ranges
+    centres = np.asarray((np.arange(count) + 0.5) * (SLICES / count), dtype=np.float64)
+    known = number > 0
+    edges = known
+    where = np.floor((hidden @ axis - low) / length * count).astype(np.intp)
+    inside = (where >= 0) & (where < count)
+    if inside.any():
+        where, beside = where[inside], hidden[inside] @ aside
+        reach = hidden_reach(beside, where, left, right, 1.5 * spacing)
+        seen = right - left
+        left, right = _completed(left, right, reach, known, centres)
+        # Of a slice that is hidden for the most part nothing but its edges is known.
+        known = known & (2 * seen >= right - left)
+        side, index = np.concatenate([side, beside]), np.concatenate([index, where])
     filled = filled_share(side, index, left, right, 1.5 * spacing)
-
-    known = np.flatnonzero(number > 0)
-    centres = (known + 0.5) * (SLICES / count)
     wanted = np.arange(SLICES) + 0.5
 
-    def spread(values: Array) -> Array:
-        return np.asarray(np.interp(wanted, centres, values[known]))
+    def spread(values: Array, where: NDArray[np.bool_] = known) -> Array:
+        return np.asarray(np.interp(wanted, centres[where], values[where]))
 
     return Profile(
         axis=axis,
         place=place * SLICES,
         step=length / SLICES,
-        width=np.maximum(spread(right - left), 0.5 * spacing),
-        middle=spread((left + right) / 2),
-        filled=spread(filled),
+        width=np.maximum(spread(right - left, edges), 0.5 * spacing),
+        middle=spread((left + right) / 2, edges),
+        filled=spread(filled, edges),
         top=spread(top),
         bottom=spread(bottom),
         relief=spread(close - far),
         depth=spread(depth),
     )
+
+
+def _completed(
+    left: Array, right: Array, reach: Array, known: NDArray[np.bool_], centres: Array
+) -> tuple[Array, Array]:
+    """Return edges (count,) of slices: hidden ones in line with those seen before and after.
+
+    Parameters
+    ----------
+    left, right : (count,) array
+        Edges as far as they were seen.
+    reach : (2, count) array
+        How far they may really lie out, as something hides what is beyond.
+    known : (count,) array
+        Slices with points.
+    centres : (count,) array
+        Places of the slices along the axis.
+    """
+    fixed_left, fixed_right = known & (reach[0] >= left), known & (reach[1] <= right)
+    if fixed_left.any():
+        wanted = np.interp(centres, centres[fixed_left], left[fixed_left])
+        left = np.minimum(left, np.maximum(wanted, reach[0]))
+    if fixed_right.any():
+        wanted = np.interp(centres, centres[fixed_right], right[fixed_right])
+        right = np.maximum(right, np.minimum(wanted, reach[1]))
+    return left, right
 
 
 @kernel
@@ -198,3 +246,46 @@ def filled_share(side: Array, index: Indices, left: Array, right: Array, cell: f
     for each in range(len(left)):
         found[each] = seen[each].sum() / columns[each]
     return found
+
+
+@kernel
+def hidden_reach(side: Array, index: Indices, left: Array, right: Array, cell: float) -> Array:
+    """Return how far beyond its edges (2, count) a slice is hidden without a gap.
+
+    The edges themselves where nothing hides what is beyond them.
+
+    Parameters
+    ----------
+    side : (U,) array
+        Where each hidden place lies across the slices, metres.
+    index : (U,) array
+        Its slice.
+    left, right : (count,) array
+        Edges of the slices, metres.
+    cell : float
+        Size of a place, metres; gaps of one cell are none.
+    """
+    count = len(left)
+    reach = np.empty((2, count))
+    reach[0], reach[1] = left, right
+    low, high = min(side.min(), left.min()), max(side.max(), right.max())
+    columns = int((high - low) / cell) + 1
+    taken = np.zeros((count, columns), dtype=np.bool_)
+    for k in range(len(side)):
+        taken[index[k], int((side[k] - low) / cell)] = True
+    for each in range(count):
+        for way in range(2):
+            step = 2 * way - 1
+            at = int((reach[way, each] - low) / cell)
+            for _ in range(columns):
+                if 0 <= at + step < columns and taken[each, at + step]:
+                    at += step
+                elif 0 <= at + 2 * step < columns and taken[each, at + 2 * step]:
+                    at += 2 * step
+                else:
+                    break
+                edge = low + (at + way) * cell
+                reach[way, each] = (
+                    max(reach[1, each], edge) if way == 1 else min(reach[0, each], edge)
+                )
+    return reach

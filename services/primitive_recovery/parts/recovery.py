@@ -15,7 +15,11 @@ Array = NDArray[np.float64]
 
 
 def recover_parts(
-    request: RecoverRequest, points: Array, cutter: Cutter, classifier: ShapeClassifier
+    request: RecoverRequest,
+    points: Array,
+    others: Array | None,
+    cutter: Cutter,
+    classifier: ShapeClassifier,
 ) -> RecoverResponse:
     """Return a classified superquadric of every part, largest part first.
 
@@ -25,6 +29,8 @@ def recover_parts(
         Viewpoint, support plane and seed.
     points : (N, 3) array
         Its points, checked; metres.
+    others : (M, 3) array or None
+        Its obstacles, checked; metres.
     cutter : Cutter
         Where to cut.
     classifier : ShapeClassifier
@@ -33,7 +39,7 @@ def recover_parts(
     rng = np.random.default_rng(request.seed)
     viewpoint = np.array(request.viewpoint)
     up = None if request.up is None else np.array(request.up)
-    found = segment(points, viewpoint, request.plane, cutter)
+    found = segment(points, viewpoint, request.plane, cutter, others)
     members = [found.labels == part for part in range(len(found.holes))]
     fits = [
         fit_part(
@@ -41,7 +47,7 @@ def recover_parts(
             viewpoint=viewpoint,
             plane=request.plane,
             up=up,
-            others=points[~own],
+            others=np.concatenate([points[~own], found.front]),
             rng=rng,
         )
         for own in members

@@ -44,16 +44,23 @@ class Segmentation:
         Which parts meet, and where.
     quality : tuple of float
         What spoke for each cut, in the order they were made.
+    front : (U, 3) array
+        Points of what hides the object, as dense as its own, metres.
     """
 
     labels: NDArray[np.int16]
     holes: tuple[int, ...]
     joints: tuple[PartJoint, ...]
     quality: tuple[float, ...]
+    front: Array
 
 
 def segment(
-    points: Array, viewpoint: Array, plane: SupportPlane | None, cutter: Cutter
+    points: Array,
+    viewpoint: Array,
+    plane: SupportPlane | None,
+    cutter: Cutter,
+    others: Array | None = None,
 ) -> Segmentation:
     """Return the parts of an object.
 
@@ -67,8 +74,16 @@ def segment(
         What the object stands on.
     cutter : Cutter
         The trained scorers.
+    others : (M, 3) array, optional
+        Points of other things, metres. Where they are in front of the object it is cut as
+        if it went on straight behind them; the border of what they hide is no edge of it.
     """
-    view = part_view(points, viewpoint, plane)
+    view = part_view(points, viewpoint, plane, others=others)
+    seen = len(points)
+    behind = view.bridges()
+    if len(behind):
+        points = np.vstack([points, behind])
+        view = part_view(points, viewpoint, plane, others=others)
     labels = np.zeros(len(points), dtype=np.int16)
     quality: list[float] = []
     waiting = [(np.arange(len(points)), view)]
@@ -78,27 +93,30 @@ def segment(
             continue
         side, best = cutter.best_cut(piece)
         least = LEAST_QUALITY_OF_PIECE if piece.is_piece else LEAST_QUALITY
-        smaller = min(int(side.sum()), int((~side).sum()))
+        visible = side[rows < seen]
+        smaller = min(int(visible.sum()), int((~visible).sum()))
         if best < least or smaller < LEAST_POINTS_OF_PART:
             continue
         quality.append(best)
         labels[rows[side]] = len(quality)
         waiting += [
-            (kept, part_view(points[kept], viewpoint, plane, is_piece=True))
+            (kept, part_view(points[kept], viewpoint, plane, others=others, is_piece=True))
             for kept in (rows[~side], rows[side])
             if len(kept) >= LEAST_POINTS
         ]
-    labels = _largest_first(labels)
+    labels = _largest_first(labels, seen)
     return Segmentation(
-        labels=labels,
-        holes=count_holes(view.picture, labels),
+        labels=labels[:seen],
+        holes=count_holes(view.picture, labels, view.hidden.mask),
         joints=joints_of(points, view.picture, labels),
         quality=tuple(quality),
+        front=view.middle + view.hidden.front,
     )
 
 
-def _largest_first(labels: NDArray[np.int16]) -> NDArray[np.int16]:
-    order = np.argsort(-np.bincount(labels), kind="stable")
+def _largest_first(labels: NDArray[np.int16], seen: int) -> NDArray[np.int16]:
+    """Return the labels (N,) by the size of the parts among the first `seen`."""
+    order = np.argsort(-np.bincount(labels[:seen]), kind="stable")
     rank = np.empty(len(order), dtype=np.int16)
     rank[order] = np.arange(len(order), dtype=np.int16)
     return rank[labels]

@@ -8,7 +8,6 @@ import numpy as np
 from numpy.typing import NDArray
 
 from services.primitive_recovery.parts.grid import grown
-from shared.geometry.rotation import frame_from_z
 
 Array = NDArray[np.float64]
 Mask = NDArray[np.bool_]
@@ -24,9 +23,6 @@ point of every square lattice however it is turned, so a camera's pixels leave n
 BORDER = 2
 """Empty cells around the silhouette."""
 
-STEEPEST = 4.0
-"""Tangent of the widest angle off the mean ray that a point may have in the picture."""
-
 
 @dataclass(frozen=True)
 class Silhouette:
@@ -40,17 +36,31 @@ class Silhouette:
         Cell of each point.
     cell : float
         Side of a cell, metres at the points' mean distance.
+    low : (2,) array
+        Where the first cell begins, in the plane's own unit.
+    side : float
+        Side of a cell in that unit.
     """
 
     mask: Mask
     row: Indices
     column: Indices
     cell: float
+    low: Array
+    side: float
 
     @property
     def closed(self) -> Mask:
         """Cells (H, W) of the silhouette with its narrowest gaps filled."""
         return np.asarray(self.mask | ~grown(~grown(self.mask, 1), 1))
+
+    def cells_of(self, places: Array) -> Indices:
+        """Return the rows and columns (N, 2) of places (N, 2) on the plane, also outside."""
+        return np.floor((places - self.low) / self.side).astype(np.intp)
+
+    def middles(self, cells: Indices) -> Array:
+        """Return where on the plane the middles (N, 2) of cells (N, 2) are."""
+        return np.asarray(self.low + (cells + 0.5) * self.side)
 
     def at_points(self, picture: NDArray[np.generic]) -> NDArray[np.generic]:
         """Return the value of a picture (H, W) at each point (N,)."""
@@ -63,50 +73,20 @@ def silhouette(flat: Array, apart: float, metres: float) -> Silhouette:
     Parameters
     ----------
     flat : (N, 2) array
-        See `project`.
+        On the plane across the mean viewing ray.
     apart : float
         About how far neighbours are apart there.
     metres : float
         Per unit of length there.
     """
-    low = flat.min(axis=0)
     spread = float(max(np.ptp(flat, axis=0).max(), 1e-12))
     side = max(CELL * apart, spread / (LONGEST - 1))
+    low = flat.min(axis=0)
     cells = np.floor((flat - low) / side).astype(np.intp) + BORDER
     rows, columns = cells.max(axis=0) + 1 + BORDER
     mask = np.zeros((rows, columns), dtype=bool)
     mask[cells[:, 0], cells[:, 1]] = True
-    return Silhouette(mask, cells[:, 0], cells[:, 1], side * metres)
-
-
-def project(
-    centred: Array, viewpoint: Array | None, ray: Array, along: Array
-) -> tuple[Array, float]:
-    """Return each point's place (N, 2) on the plane across a ray, and metres per unit there.
-
-    Parameters
-    ----------
-    centred : (N, 3) array
-        Points about their mean, metres.
-    viewpoint : (3,) array or None
-        Position of the sensor about that mean. Without it, or where it is so
-        close that no picture spans them all, the points are projected in parallel.
-    ray : (3,) array
-        Unit vector from the sensor to the mean.
-    along : (3,) array
-        Direction that becomes the first axis, so that the picture turns with
-        the object.
-    """
-    x_axis, y_axis = across(ray, along)
-    frame = np.column_stack([x_axis, y_axis, ray])
-    if viewpoint is None:
-        return centred @ frame[:, :2], 1.0
-    placed = (centred - viewpoint) @ frame
-    depth = placed[:, 2]
-    aside = np.sqrt(placed[:, 0] ** 2 + placed[:, 1] ** 2)
-    if (aside >= STEEPEST * depth).any():
-        return centred @ frame[:, :2], 1.0
-    return placed[:, :2] / depth[:, None], float(depth.mean())
+    return Silhouette(mask, cells[:, 0], cells[:, 1], side * metres, low - BORDER * side, side)
 
 
 def spacing(flat: Array) -> float:
@@ -119,18 +99,3 @@ def spacing(flat: Array) -> float:
     occupied = np.zeros(rows * columns, dtype=bool)
     occupied[cells[:, 0] * columns + cells[:, 1]] = True
     return coarse * float(np.sqrt(np.count_nonzero(occupied) / len(flat)))
-
-
-def across(axis: Array, towards: Array) -> tuple[Array, Array]:
-    """Return two unit vectors (3,) across a unit vector: the one nearest `towards`, and the other.
-
-    Where both are parallel, any two.
-    """
-    one = towards - (towards @ axis) * axis
-    length = float(np.sqrt(one @ one))
-    if length < 1e-6:
-        frame = frame_from_z(axis)
-        return frame[:, 0], frame[:, 1]
-    one = one / length
-    (a, b, c), (x, y, z) = axis, one
-    return one, np.array([b * z - c * y, c * x - a * z, a * y - b * x])

@@ -7,12 +7,9 @@ from dataclasses import dataclass
 import numpy as np
 from numpy.typing import NDArray
 
-from services.primitive_recovery.parts.silhouette import (
-    Silhouette,
-    project,
-    silhouette,
-    spacing,
-)
+from services.primitive_recovery.parts.hidden import Hidden, bridges, hidden_by
+from services.primitive_recovery.parts.projection import Projection, projection
+from services.primitive_recovery.parts.silhouette import Silhouette, silhouette, spacing
 from shared.geometry.points import tail_signs
 from shared.geometry.rotation import unit
 from shared.schemas.scene import SupportPlane
@@ -30,8 +27,10 @@ class PartView:
         Metres.
     viewpoint : (3,) array
         Where the sensor was.
+    middle : (3,) array
+        Mean of the points.
     centred : (N, 3) array
-        The points about their mean.
+        The points about it.
     ray : (3,) array
         Unit vector from the sensor to that mean.
     axes : (3, 3) array
@@ -42,6 +41,10 @@ class PartView:
         Unit normal of the support plane.
     picture : Silhouette
         Of the points.
+    seen_by : Projection
+        Into the picture.
+    hidden : Hidden
+        Cells of the picture where other things hide what is behind them.
     spacing : float
         About how far neighbouring points are apart, metres.
     is_piece : bool
@@ -51,12 +54,15 @@ class PartView:
 
     points: Array
     viewpoint: Array
+    middle: Array
     centred: Array
     ray: Array
     axes: Array
     height: Array
     up: Array | None
     picture: Silhouette
+    seen_by: Projection
+    hidden: Hidden
     spacing: float
     is_piece: bool
 
@@ -65,11 +71,24 @@ class PartView:
         """Return how far towards the sensor each point (N,) lies, metres."""
         return -(self.centred @ self.ray)
 
+    def bridges(self) -> Array:
+        """Return points (B, 3) where the object goes on behind what hides it, metres."""
+        ahead = self.seen_by.placed(self.centred)[1]
+        return self.middle + bridges(self.hidden, self.picture, self.seen_by, ahead)
+
 
 def part_view(
-    points: Array, viewpoint: Array, plane: SupportPlane | None, *, is_piece: bool = False
+    points: Array,
+    viewpoint: Array,
+    plane: SupportPlane | None,
+    *,
+    others: Array | None = None,
+    is_piece: bool = False,
 ) -> PartView:
-    """Return the view of points (N, 3) from a viewpoint (3,), above a plane if there is one."""
+    """Return the view of points (N, 3) from a viewpoint (3,), above a plane if there is one.
+
+    `others` (M, 3) are points of other things, which may hide some of the object.
+    """
     middle = points.mean(axis=0)
     centred = points - middle
     axes = principal_axes(centred)
@@ -77,8 +96,10 @@ def part_view(
     reach = float(np.linalg.norm(centred, axis=1).max())
     amid = float(np.linalg.norm(ahead)) <= reach
     ray = axes[2] if amid else unit(ahead)
-    flat, metres = project(centred, None if amid else viewpoint - middle, ray, axes[0])
+    seen_by = projection(centred, None if amid else viewpoint - middle, ray, axes[0])
+    flat, depth = seen_by.placed(centred)
     apart = spacing(flat)
+    picture = silhouette(flat, apart, seen_by.metres)
     up = None
     if plane is None:
         height = -(centred @ ray)
@@ -89,13 +110,16 @@ def part_view(
     return PartView(
         points=points,
         viewpoint=viewpoint,
+        middle=middle,
         centred=centred,
         ray=ray,
         axes=axes,
         height=height,
         up=up,
-        picture=silhouette(flat, apart, metres),
-        spacing=apart * metres,
+        picture=picture,
+        seen_by=seen_by,
+        hidden=hidden_by(None if others is None else others - middle, picture, seen_by, depth),
+        spacing=apart * seen_by.metres,
         is_piece=is_piece,
     )
 

@@ -169,6 +169,21 @@ def test_too_many_points_are_refused(can: Array) -> None:
         small.recover(RecoverRequest(points=can))
 
 
+@pytest.mark.parametrize(
+    ("obstacles", "error"),
+    [
+        (np.array([[0.1, np.nan, 0.5]]), InvalidInput),
+        (np.array([[0.1, np.inf, 0.5]]), InvalidInput),
+        (np.zeros((3000, 3)), PayloadTooLarge),
+    ],
+)
+def test_bad_obstacles_are_named(can: Array, obstacles: Array, error: type[SpargeError]) -> None:
+    stage = PrimitiveRecovery(PrimitiveRecoverySettings(max_points=2500))
+    with pytest.raises(error) as caught:
+        stage.recover(RecoverRequest(points=can, obstacle_points=obstacles))
+    assert caught.value.details["field"] == "obstacle_points"
+
+
 @pytest.mark.parametrize("count", [11, 12, 20, 60])
 def test_a_few_points_are_enough(
     stage: PrimitiveRecovery, count: int, rng: np.random.Generator
