@@ -82,21 +82,24 @@ def any_inside(
     frame of `origin` (G, 3) and `rotation` (G, 3, 3); `limits` (G, 5) in this order.
     """
     hit = np.zeros(len(origin), dtype=np.bool_)
+    columns = points.T.copy()
+    px, py, pz = columns[0], columns[1], columns[2]
     for g in range(len(origin)):
-        r = rotation[g]
+        r, o = rotation[g], origin[g]
         middle, inner, outer, back, front = limits[g]
-        for n in range(len(points)):
-            x = points[n, 0] - origin[g, 0]
-            y = points[n, 1] - origin[g, 1]
-            z = points[n, 2] - origin[g, 2]
-            aside = abs(r[0, 1] * x + r[1, 1] * y + r[2, 1] * z - middle)
-            if not inner < aside < outer:
-                continue
-            if abs(r[0, 0] * x + r[1, 0] * y + r[2, 0] * z) >= half_width:
-                continue
-            if back < r[0, 2] * x + r[1, 2] * y + r[2, 2] * z < front:
-                hit[g] = True
-                break
+        x0 = r[0, 0] * o[0] + r[1, 0] * o[1] + r[2, 0] * o[2]
+        y0 = r[0, 1] * o[0] + r[1, 1] * o[1] + r[2, 1] * o[2] + middle
+        z0 = r[0, 2] * o[0] + r[1, 2] * o[1] + r[2, 2] * o[2]
+        xx, xy, xz = r[0, 0], r[1, 0], r[2, 0]
+        yx, yy, yz = r[0, 1], r[1, 1], r[2, 1]
+        zx, zy, zz = r[0, 2], r[1, 2], r[2, 2]
+        count = 0
+        for n in range(len(px)):  # without branches: vector instructions
+            x = abs(xx * px[n] + xy * py[n] + xz * pz[n] - x0)
+            y = abs(yx * px[n] + yy * py[n] + yz * pz[n] - y0)
+            z = zx * px[n] + zy * py[n] + zz * pz[n] - z0
+            count += (x < half_width) & (y > inner) & (y < outer) & (z > back) & (z < front)
+        hit[g] = count > 0
     return hit
 
 

@@ -2,7 +2,8 @@
 
 from __future__ import annotations
 
-from dataclasses import dataclass, replace
+from collections.abc import Sequence
+from dataclasses import dataclass, fields, replace
 
 import numpy as np
 from numpy.typing import NDArray
@@ -68,6 +69,21 @@ class Contacts:
     finger_hit: Mask
     palm_hit: Mask
     empty: Mask
+
+    def take(self, chosen: NDArray[np.intp] | Mask) -> Contacts:
+        """Return the chosen rows."""
+        held = {each.name: getattr(self, each.name) for each in fields(self)}
+        placed = held.pop("placed").take(chosen)
+        return Contacts(placed, **{name: values[chosen] for name, values in held.items()})
+
+
+def concatenated(several: Sequence[Contacts]) -> Contacts:
+    """Return the rows of several, one after the other."""
+    names = [each.name for each in fields(Contacts) if each.name != "placed"]
+    return Contacts(
+        Placements.concatenated([each.placed for each in several]),
+        **{name: np.concatenate([getattr(each, name) for each in several]) for name in names},
+    )
 
 
 def find_contacts(workspace: Workspace, hand: Hand, placed: Placements) -> Contacts:

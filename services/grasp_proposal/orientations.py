@@ -41,7 +41,9 @@ class Hands:
     possible: NDArray[np.bool_]
 
 
-def hypothesise(frames: LocalFrames, up: Array | None, viewpoint: Array | None) -> Hands:
+def hypothesise(
+    frames: LocalFrames, up: Array | None, viewpoint: Array | None, turn_deg: float = 0.0
+) -> Hands:
     """Return the hands to try at each point.
 
     Parameters
@@ -51,19 +53,21 @@ def hypothesise(frames: LocalFrames, up: Array | None, viewpoint: Array | None) 
         Against gravity; without it no family from above or from the side.
     viewpoint : (3,) array or None
         Position of the sensor; without it no family along the line of sight.
+    turn_deg : float
+        By which the hands of every family are turned further.
     """
-    part = frames.part_axes
-    families = [_about_curvature_axis(frames)]
+    part, more = frames.part_axes, np.radians(turn_deg)
+    families = [_about_curvature_axis(frames, more)]
     sight = None if viewpoint is None else unit(frames.points - viewpoint)
     if up is not None:
         down = np.broadcast_to(-up, part.shape)
-        families.append(_across(down, part, _ABOVE_TURNS))
+        families.append(_across(down, part, _ABOVE_TURNS + more))
     if sight is not None:
-        families.append(_across(sight, part, _SIGHT_TURNS))
+        families.append(_across(sight, part, _SIGHT_TURNS + more))
     if sight is not None and up is not None:
         slanted = unit(sight - up)
-        families.append(_across(slanted, part, _SIGHT_TURNS))
-        families.append(_from_the_side(sight, up))
+        families.append(_across(slanted, part, _SIGHT_TURNS + more))
+        families.append(_from_the_side(sight, up, more))
     rotations = np.concatenate(families, axis=1)
     possible = np.asarray(np.isfinite(rotations).all(axis=(2, 3)))
     if up is not None:
@@ -71,12 +75,12 @@ def hypothesise(frames: LocalFrames, up: Array | None, viewpoint: Array | None) 
     return Hands(np.nan_to_num(rotations), possible)
 
 
-def _about_curvature_axis(frames: LocalFrames) -> Array:
+def _about_curvature_axis(frames: LocalFrames, more: float) -> Array:
     """Approach against the normal, turned about the axis that the hand straddles."""
     axis = unit(frames.curvature_axes)
     inwards = -frames.normals
     sideways = np.cross(axis, inwards)
-    cos, sin = np.cos(_CURVATURE_TURNS), np.sin(_CURVATURE_TURNS)
+    cos, sin = np.cos(_CURVATURE_TURNS + more), np.sin(_CURVATURE_TURNS + more)
     approach = cos[None, :, None] * inwards[:, None] + sin[None, :, None] * sideways[:, None]
     x_axis = np.broadcast_to(axis[:, None], approach.shape)
     return _stack(x_axis, approach)
@@ -95,13 +99,14 @@ def _across(approach: Array, part: Array, turns: Array) -> Array:
     return _stack(turned, np.broadcast_to(approach[:, None], turned.shape))
 
 
-def _from_the_side(sight: Array, up: Array) -> Array:
+def _from_the_side(sight: Array, up: Array, more: float) -> Array:
     """Approach level, closing level: an upright part; NaN where one looks straight down."""
     level = sight - (sight @ up)[:, None] * up
     length = np.linalg.norm(level, axis=1, keepdims=True)
     level = np.divide(level, length, out=np.full_like(level, np.nan), where=length > 0.05)
     across = np.cross(up, level)
-    cos, sin = np.cos(_SIDE_TURNS)[None, :, None], np.sin(_SIDE_TURNS)[None, :, None]
+    turns = _SIDE_TURNS + more
+    cos, sin = np.cos(turns)[None, :, None], np.sin(turns)[None, :, None]
     approach = cos * level[:, None] + sin * across[:, None]
     return _stack(np.broadcast_to(up, approach.shape), approach)
 

@@ -2,7 +2,8 @@
 
 from __future__ import annotations
 
-from dataclasses import dataclass
+from collections.abc import Sequence
+from dataclasses import dataclass, fields
 
 import numpy as np
 from numpy.typing import NDArray
@@ -38,14 +39,13 @@ class Placements:
 
     def take(self, chosen: NDArray[np.intp] | Mask) -> Placements:
         """Return the chosen rows."""
-        return Placements(
-            self.rotation[chosen],
-            self.origin[chosen],
-            self.tip[chosen],
-            self.left[chosen],
-            self.right[chosen],
-            self.front[chosen],
-        )
+        return Placements(*(getattr(self, each.name)[chosen] for each in fields(self)))
+
+    @classmethod
+    def concatenated(cls, several: Sequence[Placements]) -> Placements:
+        """Return the rows of several, one after the other."""
+        names = [each.name for each in fields(cls)]
+        return cls(*(np.concatenate([getattr(each, name) for each in several]) for name in names))
 
     def __len__(self) -> int:
         return len(self.tip)

@@ -7,16 +7,14 @@ from collections import Counter
 import numpy as np
 from numpy.typing import NDArray
 
-from services.grasp_proposal.boxes import support_clearance, touches_obstacle
-from services.grasp_proposal.contacts import Contacts, find_contacts
-from services.grasp_proposal.diversity import Likeness, distinct
+from services.grasp_proposal.boxes import support_clearance
+from services.grasp_proposal.candidates import candidates
+from services.grasp_proposal.contacts import Contacts, concatenated
+from services.grasp_proposal.diversity import distinct
 from services.grasp_proposal.hand import Hand
-from services.grasp_proposal.orientations import hypothesise
-from services.grasp_proposal.placements import Placements
-from services.grasp_proposal.scorer import promise, score, tool_centre
-from services.grasp_proposal.search import search
+from services.grasp_proposal.passing import passing
+from services.grasp_proposal.scorer import score, tool_centre
 from services.grasp_proposal.settings import GraspProposalSettings
-from services.grasp_proposal.surface import local_frames
 from services.grasp_proposal.visibility import SightMap
 from services.grasp_proposal.workspace import Workspace, build_workspace
 from shared.errors import UnknownGripper
@@ -30,10 +28,8 @@ from shared.schemas.scene import SupportPlane
 
 Array = NDArray[np.float64]
 
-_LOOK_CLOSER = 320
-_UNLIKE = Likeness(distance=0.006, angle_deg=12.0)
-_LEAST_ALIGNMENT = 0.5
-_TOUCHES = 0.8
+_ENOUGH = 16
+_TURNS_DEG = (0.0, 20.0, -20.0)
 
 
 class GraspProposer:
@@ -83,8 +79,8 @@ class GraspProposer:
         workspace = build_workspace(request)
         rejected: Counter[str] = Counter()
         rng = np.random.default_rng(request.seed)
-        placed = _candidates(workspace, hand, request.samples, rng, rejected)
-        rows, on_focus = self._judge(workspace, hand, placed, rejected)
+        contacts = _seek(workspace, hand, request.samples, rng, rejected)
+        rows, on_focus = self._answer(workspace, hand, contacts, rejected)
         left_out = {reason: count for reason, count in sorted(rejected.items()) if count}
         return ProposeResponse(
             grasps=rows,
@@ -93,38 +89,18 @@ class GraspProposer:
             rejected=left_out,
         )
 
-    def _judge(
-        self, workspace: Workspace, hand: Hand, placed: Placements, rejected: Counter[str]
+    def _answer(
+        self, workspace: Workspace, hand: Hand, contacts: Contacts, rejected: Counter[str]
     ) -> tuple[Array, Array]:
         """Return grasp rows (G, 9) in the request's frame, and what they hold in focus (G, 3)."""
-        if not len(placed):
+        if not len(contacts.width):
             return np.empty((0, 9)), np.empty((0, 3))
-        contacts = find_contacts(workspace, hand, placed)
-        tips, palm = support_clearance(contacts.placed, hand, contacts.opening, workspace)
-        failures = {
-            "no_contact": contacts.empty,
-            "too_wide": contacts.width > hand.max_width,
-            "collision_object": contacts.finger_hit | contacts.palm_hit,
-            "collision_support": (tips < _TOUCHES * hand.support_clearance)
-            | (palm < hand.palm_clearance),
-            "not_antipodal": contacts.sloped | (contacts.alignment < _LEAST_ALIGNMENT),
-        }
-        good = np.ones(len(placed), dtype=np.bool_)
-        for reason, failed in failures.items():
-            rejected[reason] += int((good & failed).sum())
-            good &= ~failed
-        if len(workspace.obstacles):
-            rows = np.flatnonzero(good)
-            hit = touches_obstacle(
-                contacts.placed.take(rows), hand, contacts.opening[rows], workspace.obstacles
-            )
-            rejected["collision_obstacle"] += int(hit.sum())
-            good[rows[hit]] = False
+        _, palm = support_clearance(contacts.placed, hand, contacts.opening, workspace)
         sight = None
         if workspace.viewpoint is not None:
             sight = SightMap.of(workspace.points, workspace.viewpoint)
-        scores = np.where(good, score(workspace, hand, contacts, palm, sight), -1.0)
-        order = np.argsort(-scores, kind="stable")[: int(good.sum())]
+        scores = score(workspace, hand, contacts, palm, sight)
+        order = np.argsort(-scores, kind="stable")
         return self._rows(workspace, hand, contacts, scores, order, rejected)
 
     def _rows(
@@ -167,32 +143,18 @@ def upright(rotations: Array) -> Array:
     )
 
 
-def _candidates(
+def _seek(
     workspace: Workspace,
     hand: Hand,
     samples: int,
     rng: np.random.Generator,
     rejected: Counter[str],
-) -> Placements:
-    """Search around sampled points and keep the most promising hands for a closer look."""
-    wanted = np.nonzero(workspace.in_focus)[0]
-    if len(wanted) > samples:
-        wanted = np.sort(rng.choice(wanted, samples, replace=False))
-    points = workspace.points[wanted]
-    frames = local_frames(
-        points, workspace.normals[wanted], workspace.coarse, workspace.coarse_normals
-    )
-    hands = hypothesise(frames, workspace.up, workspace.viewpoint)
-    placed = search(workspace, hand, points, hands, rejected)
-    opening = np.minimum(placed.right - placed.left + 2 * hand.clearance, hand.max_opening)
-    tips, palm = support_clearance(placed, hand, opening, workspace)
-    low = (tips < _TOUCHES * hand.support_clearance) | (palm < hand.palm_clearance)
-    rejected["collision_support"] += int(low.sum())
-    placed = placed.take(~low)
-    if len(placed) <= _LOOK_CLOSER:
-        return placed
-    order = np.argsort(-promise(workspace, hand, placed), kind="stable")
-    centres, rotations = tool_centre(placed, hand)[order], placed.rotation[order]
-    kept = order[distinct(centres, rotations, _LOOK_CLOSER, _UNLIKE)]
-    rejected["less_promising"] += len(order) - len(kept)
-    return placed.take(np.sort(kept))
+) -> Contacts:
+    """Return the hands that pass, from more samples and turns while they are few."""
+    found = []
+    for turn_deg in _TURNS_DEG:
+        placed = candidates(workspace, hand, samples, rng, rejected, turn_deg)
+        found.append(passing(workspace, hand, placed, rejected))
+        if sum(len(contacts.width) for contacts in found) >= _ENOUGH:
+            break
+    return concatenated(found)

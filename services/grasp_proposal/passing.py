@@ -1,0 +1,44 @@
+"""Which of the placed hands would hold something and touch nothing else."""
+
+from __future__ import annotations
+
+from collections import Counter
+
+import numpy as np
+
+from services.grasp_proposal.boxes import support_clearance, touches_obstacle
+from services.grasp_proposal.candidates import TOUCHES
+from services.grasp_proposal.contacts import Contacts, find_contacts
+from services.grasp_proposal.hand import Hand
+from services.grasp_proposal.placements import Placements
+from services.grasp_proposal.workspace import Workspace
+
+_LEAST_ALIGNMENT = 0.5
+
+
+def passing(
+    workspace: Workspace, hand: Hand, placed: Placements, rejected: Counter[str]
+) -> Contacts:
+    """Return the contacts of the hands that pass all checks; count the others by reason."""
+    contacts = find_contacts(workspace, hand, placed)
+    tips, palm = support_clearance(contacts.placed, hand, contacts.opening, workspace)
+    failures = {
+        "no_contact": contacts.empty,
+        "too_wide": contacts.width > hand.max_width,
+        "collision_object": contacts.finger_hit | contacts.palm_hit,
+        "collision_support": (tips < TOUCHES * hand.support_clearance)
+        | (palm < hand.palm_clearance),
+        "not_antipodal": contacts.sloped | (contacts.alignment < _LEAST_ALIGNMENT),
+    }
+    good = np.ones(len(placed), dtype=np.bool_)
+    for reason, failed in failures.items():
+        rejected[reason] += int((good & failed).sum())
+        good &= ~failed
+    if len(workspace.obstacles):
+        rows = np.flatnonzero(good)
+        hit = touches_obstacle(
+            contacts.placed.take(rows), hand, contacts.opening[rows], workspace.obstacles
+        )
+        rejected["collision_obstacle"] += int(hit.sum())
+        good[rows[hit]] = False
+    return contacts.take(good)
