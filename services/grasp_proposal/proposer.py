@@ -10,14 +10,15 @@ from numpy.typing import NDArray
 from services.grasp_proposal.boxes import support_clearance
 from services.grasp_proposal.candidates import candidates
 from services.grasp_proposal.contacts import Contacts, concatenated
+from services.grasp_proposal.cup import Cup
 from services.grasp_proposal.diversity import distinct
 from services.grasp_proposal.hand import Hand
 from services.grasp_proposal.passing import passing
 from services.grasp_proposal.scorer import score, tool_centre
 from services.grasp_proposal.settings import GraspProposalSettings
+from services.grasp_proposal.suction import propose_suction
 from services.grasp_proposal.visibility import SightMap
 from services.grasp_proposal.workspace import Workspace, build_workspace
-from shared.errors import UnknownGripper
 from shared.geometry.rotation import quaternion_from_matrix
 from shared.geometry.se3 import transform_points
 from shared.grippers import choose_gripper, load_grippers
@@ -50,15 +51,17 @@ class GraspProposer:
         )
         post = np.column_stack([-0.02 * np.sin(turn), 0.02 * np.cos(turn), height])
         plane = SupportPlane(normal=(0.0, 0.0, 1.0), offset=0.0, inliers=0, residual_mm=0.0)
-        self.propose(
-            ProposeRequest(
+        kinds = {gripper.kind: name for name, gripper in self._grippers.items()}
+        for name in kinds.values():
+            request = ProposeRequest(
                 points=post,
                 obstacle_points=post + np.array([0.1, 0.3, 0.0]),
                 plane=plane,
                 viewpoint=(-0.5, 0.0, 0.5),
                 samples=20,
+                gripper=name,
             )
-        )
+            self.propose(request)
 
     def propose(self, request: ProposeRequest) -> ProposeResponse:
         """Return collision-free grasps, best first.
@@ -69,18 +72,20 @@ class GraspProposer:
             See `choose_gripper` and `build_workspace`.
         """
         gripper = choose_gripper(self._grippers, request.gripper)
-        if isinstance(gripper, SuctionGripper):
-            raise UnknownGripper(
-                f"no grasps are proposed for the suction gripper {gripper.name!r} yet",
-                field="gripper",
-                found=gripper.name,
-            )
-        hand = Hand.of(gripper, self._settings)
         workspace = build_workspace(request)
         rejected: Counter[str] = Counter()
         rng = np.random.default_rng(request.seed)
-        contacts = _seek(workspace, hand, request.samples, rng, rejected)
-        rows, on_focus = self._answer(workspace, hand, contacts, rejected)
+        if isinstance(gripper, SuctionGripper):
+            cup = Cup.of(gripper, self._settings)
+            limit = self._settings.max_grasps
+            cups = propose_suction(workspace, cup, request.samples, rng, rejected, limit)
+            closed = np.zeros(len(cups.scores))
+            rows = _rows(workspace, cups.centres, cups.rotations, closed, cups.scores)
+            on_focus = np.tile(cups.in_focus[:, None], 3)
+        else:
+            hand = Hand.of(gripper, self._settings)
+            contacts = _seek(workspace, hand, request.samples, rng, rejected)
+            rows, on_focus = self._answer(workspace, hand, contacts, rejected)
         left_out = {reason: count for reason, count in sorted(rejected.items()) if count}
         return ProposeResponse(
             grasps=rows,
@@ -101,34 +106,31 @@ class GraspProposer:
             sight = SightMap.of(workspace.points, workspace.viewpoint)
         scores = score(workspace, hand, contacts, palm, sight)
         order = np.argsort(-scores, kind="stable")
-        return self._rows(workspace, hand, contacts, scores, order, rejected)
-
-    def _rows(
-        self,
-        workspace: Workspace,
-        hand: Hand,
-        contacts: Contacts,
-        scores: Array,
-        order: NDArray[np.intp],
-        rejected: Counter[str],
-    ) -> tuple[Array, Array]:
-        centres = tool_centre(contacts.placed, hand)[order]
-        rotations = upright(contacts.placed.rotation[order])
+        contacts = contacts.take(order)
+        rotations = upright(contacts.placed.rotation)
+        centres = tool_centre(contacts.placed, hand)
         kept = distinct(centres, rotations, self._settings.max_grasps)
         rejected["duplicate"] += len(order) - len(kept)
-        motion = workspace.outer_from_work
-        rows = np.column_stack(
-            [
-                transform_points(motion, centres[kept]),
-                quaternion_from_matrix(motion[:3, :3] @ rotations[kept]).reshape(-1, 4),
-                contacts.width[order][kept],
-                scores[order][kept],
-            ]
+        rows = _rows(
+            workspace, centres[kept], rotations[kept], contacts.width[kept], scores[order][kept]
         )
-        shares = np.column_stack(
-            [contacts.in_focus, contacts.left_in_focus, contacts.right_in_focus]
-        )
-        return rows, shares[order][kept]
+        shares = [contacts.in_focus, contacts.left_in_focus, contacts.right_in_focus]
+        return rows, np.column_stack(shares)[kept]
+
+
+def _rows(
+    workspace: Workspace, centres: Array, rotations: Array, widths: Array, scores: Array
+) -> Array:
+    """Return grasp rows (G, 9) in the request's frame."""
+    motion = workspace.outer_from_work
+    return np.column_stack(
+        [
+            transform_points(motion, centres),
+            quaternion_from_matrix(motion[:3, :3] @ rotations).reshape(-1, 4),
+            widths,
+            scores,
+        ]
+    )
 
 
 def upright(rotations: Array) -> Array:

@@ -100,7 +100,7 @@ def _hold(workspace: Workspace, hand: Hand, contacts: Contacts) -> Array:
         return np.ones(len(contacts.width))
     rotation = contacts.placed.rotation
     lever = workspace.centre_of_mass - tool_centre(contacts.placed, hand)
-    torque = np.cross(lever, -workspace.up * _weight(workspace))
+    torque = np.cross(lever, -workspace.up * guessed_weight(workspace))
     torque = np.abs(np.einsum("gi,gij->gj", torque, rotation))
     high = np.clip(contacts.engagement, 0.002, hand.finger_length) / 2
     wide = np.clip(contacts.coverage, 0.1, 1.0) * hand.finger_width / 2
@@ -109,7 +109,7 @@ def _hold(workspace: Workspace, hand: Hand, contacts: Contacts) -> Array:
     return np.asarray(1 / (1 + load[:, 0] ** 2 + 0.25 * load[:, 1] ** 2 + load[:, 2] ** 2))
 
 
-def _weight(workspace: Workspace) -> float:
+def guessed_weight(workspace: Workspace) -> float:
     """Guess the weight in newtons: half the bounding box at 400 kg/m3, 50 g to 600 g."""
     _, axes = principal_axes(workspace.coarse)
     extents = np.ptp(workspace.coarse @ axes, axis=0)

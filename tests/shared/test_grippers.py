@@ -19,15 +19,20 @@ palm_size = [0.06, 0.1, 0.06]
 """
 
 
-def test_the_four_grippers() -> None:
+def test_the_shipped_grippers() -> None:
     grippers = load_grippers()
-    assert list(grippers) == ["panda", "robotiq_2f140", "robotiq_2f85", "tiago"]
+    fingers = ["onrobot_rg6", "panda", "robotiq_2f140", "robotiq_2f85", "tiago"]
+    assert list(grippers) == sorted([*fingers, "onrobot_vgc10"])
     openings = {
         name: gripper.max_opening
         for name, gripper in grippers.items()
         if isinstance(gripper, ParallelGripper)
     }
-    assert openings == {"panda": 0.08, "robotiq_2f140": 0.14, "robotiq_2f85": 0.085, "tiago": 0.09}
+    assert list(openings.values()) == [0.16, 0.08, 0.14, 0.085, 0.09]
+    assert list(openings) == fingers
+    cup = grippers["onrobot_vgc10"]
+    assert isinstance(cup, SuctionGripper)
+    assert cup.force == pytest.approx(450e-6 * 0.6 * 101325, rel=0.02)  # area x underpressure
 
 
 def test_an_unknown_gripper_lists_the_known() -> None:

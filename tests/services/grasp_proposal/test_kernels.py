@@ -183,18 +183,21 @@ def test_a_closer_look(rng: np.random.Generator) -> None:
 def test_warming_up_compiles_every_kernel_and_requests_none() -> None:
     """One combination of types each, or processes could overwrite each other's cache entries."""
     program = """
-from services.grasp_proposal import boxes, closer_look, diversity, eigen, neighbourhood, placing
+from services.grasp_proposal import (
+    boxes, closer_look, diversity, eigen, neighbourhood, placing, seal)
 from services.grasp_proposal.proposer import GraspProposer
 from services.grasp_proposal.settings import GraspProposalSettings
 from tests.services.grasp_proposal.scenes import box
 
 kernels = (boxes.any_inside, closer_look.look_closer, diversity._distinct, placing.place_hands,
-           eigen.principal_frames, neighbourhood.scatter_of_groups, neighbourhood.scatter_within)
+           eigen.principal_frames, neighbourhood.scatter_of_groups, neighbourhood.scatter_within,
+           seal.seal)
 proposer = GraspProposer(GraspProposalSettings())
 proposer.warm_up()
 print([len(kernel.signatures) for kernel in kernels])
 scene = box((0.05, 0.06, 0.18), turn=0.2)
-for change in ({}, {"plane": None}, {"plane": None, "up": None}, {"obstacle_points": None}):
+for change in ({}, {"plane": None}, {"plane": None, "up": None}, {"obstacle_points": None},
+               {"gripper": "onrobot_vgc10"}):
     proposer.propose(scene.request(samples=10, **change))
 print([len(kernel.signatures) for kernel in kernels])
 """
@@ -205,4 +208,4 @@ print([len(kernel.signatures) for kernel in kernels])
         capture_output=True,
         text=True,
     )
-    assert run.stdout.split("\n")[:2] == [str([1] * 7)] * 2
+    assert run.stdout.split("\n")[:2] == [str([1] * 8)] * 2
