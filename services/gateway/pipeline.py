@@ -221,6 +221,7 @@ class Pipeline:
                 point_region=assigned.point_region,
                 grasps=proposed.grasps,
                 on_region=proposed.on_focus,
+                keeps_clear=proposed.keeps_clear,
                 max_grasps=request.parameters.max_grasps,
             ),
         )

@@ -53,6 +53,26 @@ def touches_obstacle(placed: Placements, hand: Hand, opening: Array, obstacles: 
     return np.asarray(hit | between)
 
 
+def comes_near(placed: Placements, hand: Hand, opening: Array, points: Array, away: float) -> Mask:
+    """Say which hands (G,) come closer than `away` to a point (N, 3) on their straight way in.
+
+    Fingers, palm and the space between the fingers count, each as a box that is `away`
+    metres larger on every side.
+    """
+    if not len(points):
+        return np.zeros(len(placed), dtype=np.bool_)
+    back = placed.tip - hand.finger_length - hand.pregrasp
+    outer = opening / 2 + hand.finger_thickness + away
+    none = np.full(len(placed), -away)
+    half_width = hand.finger_width / 2 + away
+    fingers = _boxes_hit(placed, half_width, none, outer, back, placed.tip + away, points)
+    outer = np.full(len(placed), hand.palm_size[1] / 2 + away)
+    front = placed.tip - hand.finger_length + away
+    half_width = hand.palm_size[0] / 2 + away
+    palm = _boxes_hit(placed, half_width, none, outer, back - hand.palm_size[2], front, points)
+    return np.asarray(fingers | palm)
+
+
 def _boxes_hit(
     placed: Placements,
     half_width: float,

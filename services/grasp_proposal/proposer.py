@@ -7,7 +7,7 @@ from collections import Counter
 import numpy as np
 from numpy.typing import NDArray
 
-from services.grasp_proposal.boxes import support_clearance
+from services.grasp_proposal.boxes import comes_near, support_clearance
 from services.grasp_proposal.candidates import candidates
 from services.grasp_proposal.contacts import Contacts, concatenated
 from services.grasp_proposal.cup import Cup
@@ -30,6 +30,7 @@ from shared.schemas.scene import SupportPlane
 Array = NDArray[np.float64]
 
 _ENOUGH = 16
+_AWAY = 0.010
 _TURNS_DEG = (0.0, 20.0, -20.0)
 
 
@@ -82,24 +83,26 @@ class GraspProposer:
             closed = np.zeros(len(cups.scores))
             rows = _rows(workspace, cups.centres, cups.rotations, closed, cups.scores)
             on_focus = np.tile(cups.in_focus[:, None], 3)
+            clear = np.ones(len(rows), dtype=np.bool_)
         else:
             hand = Hand.of(gripper, self._settings)
             contacts = _seek(workspace, hand, request.samples, rng, rejected)
-            rows, on_focus = self._answer(workspace, hand, contacts, rejected)
+            rows, on_focus, clear = self._answer(workspace, hand, contacts, rejected)
         left_out = {reason: count for reason, count in sorted(rejected.items()) if count}
         return ProposeResponse(
             grasps=rows,
             on_focus=on_focus,
+            keeps_clear=clear,
             considered=len(rows) + sum(left_out.values()),
             rejected=left_out,
         )
 
     def _answer(
         self, workspace: Workspace, hand: Hand, contacts: Contacts, rejected: Counter[str]
-    ) -> tuple[Array, Array]:
-        """Return grasp rows (G, 9) in the request's frame, and what they hold in focus (G, 3)."""
+    ) -> tuple[Array, Array, NDArray[np.bool_]]:
+        """Return grasp rows (G, 9), what they hold in focus (G, 3), and if they keep clear (G,)."""
         if not len(contacts.width):
-            return np.empty((0, 9)), np.empty((0, 3))
+            return np.empty((0, 9)), np.empty((0, 3)), np.empty(0, dtype=np.bool_)
         _, palm = support_clearance(contacts.placed, hand, contacts.opening, workspace)
         sight = None
         if workspace.viewpoint is not None:
@@ -111,11 +114,12 @@ class GraspProposer:
         centres = tool_centre(contacts.placed, hand)
         kept = distinct(centres, rotations, self._settings.max_grasps)
         rejected["duplicate"] += len(order) - len(kept)
-        rows = _rows(
-            workspace, centres[kept], rotations[kept], contacts.width[kept], scores[order][kept]
-        )
+        contacts = contacts.take(kept)
+        rows = _rows(workspace, centres[kept], rotations[kept], contacts.width, scores[order][kept])
         shares = [contacts.in_focus, contacts.left_in_focus, contacts.right_in_focus]
-        return rows, np.column_stack(shares)[kept]
+        rest = workspace.points[~workspace.in_focus]
+        near = comes_near(contacts.placed, hand, contacts.opening, rest, _AWAY)
+        return rows, np.column_stack(shares), ~near
 
 
 def _rows(

@@ -13,6 +13,7 @@ from shared.schemas.grasp import SelectRequest, SelectResponse
 _SCORE = 8
 _SAME_DISTANCE = 1e-9
 _LEAST_SHARE = 0.5
+_NEAR_THE_REST = 0.8
 
 
 def select_grasps(request: SelectRequest) -> SelectResponse:
@@ -23,13 +24,15 @@ def select_grasps(request: SelectRequest) -> SelectResponse:
     the points between the pads and half of those that each pad touches. Best is the
     highest score times the share of the points between the pads that lie in the region:
     the chance to lift the object by the right part, near whose border the share falls.
-    Equals keep the order of the request. `outside_region` counts all candidates that
-    hold another part, also beyond `max_grasps`.
+    A grasp whose way in comes near the rest of the object is worth a fifth less: where
+    another is about as good, the parts that the task needs stay free. Equals keep the order
+    of the request. `outside_region` counts all candidates that hold another part, also
+    beyond `max_grasps`.
 
     Raises
     ------
     InvalidInput
-        Non-finite points or grasps, or a region mask or shares of another length.
+        Non-finite points or grasps, or a region mask, shares or ways of another length.
     EmptyCloud
         Grasps, but no point that they could hold.
     """
@@ -47,7 +50,8 @@ def select_grasps(request: SelectRequest) -> SelectResponse:
         raise EmptyCloud(f"there are {len(grasps)} grasps, but no object points", field="points")
     shares = _checked_shares(request)
     inside = holds_region(grasps[:, :3], points, region) & (shares >= _LEAST_SHARE).all(axis=1)
-    order = np.argsort(-grasps[:, _SCORE] * shares[:, 0], kind="stable")
+    worth = grasps[:, _SCORE] * shares[:, 0] * _checked_way(request)
+    order = np.argsort(-worth, kind="stable")
     chosen = order[inside[order]][: request.max_grasps]
     return SelectResponse(
         grasps=grasps[chosen],
@@ -61,15 +65,28 @@ def _checked_shares(request: SelectRequest) -> NDArray[np.float64]:
     shares, grasps = request.on_region, request.grasps
     if shares is None:
         return np.ones((len(grasps), 3))
-    if len(shares) != len(grasps):
-        raise InvalidInput(
-            f"on_region has {len(shares)} rows for {len(grasps)} grasps",
-            field="on_region",
-            found=len(shares),
-            allowed=len(grasps),
-        )
+    _check_length("on_region", len(shares), len(grasps))
     check_finite("on_region", shares)
     return shares
+
+
+def _checked_way(request: SelectRequest) -> NDArray[np.float64]:
+    """Return what the way in of each grasp (G,) makes of its worth."""
+    clear = request.keeps_clear
+    if clear is None:
+        return np.ones(len(request.grasps))
+    _check_length("keeps_clear", len(clear), len(request.grasps))
+    return np.where(clear, 1.0, _NEAR_THE_REST)
+
+
+def _check_length(name: str, found: int, grasps: int) -> None:
+    if found != grasps:
+        raise InvalidInput(
+            f"{name} has {found} rows for {grasps} grasps",
+            field=name,
+            found=found,
+            allowed=grasps,
+        )
 
 
 def holds_region(

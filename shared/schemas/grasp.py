@@ -56,6 +56,9 @@ class ProposeResponse(Message):
     grasps: GraspRows
     on_focus: HeldShares
     """How much of what each grasp holds is in the request's focus."""
+    keeps_clear: Mask
+    """For each grasp: on its way in the hand stays 10 mm away from the object outside the focus,
+    so that it leaves the parts free that the task needs."""
     considered: int
     rejected: dict[str, int]
     """How many hand poses were left out, by reason."""
@@ -90,6 +93,8 @@ class SelectRequest(Message):
     on_region: HeldShares | None = None
     """How much of what each grasp holds is in the region, where the proposer says so; without
     it, only the closest point decides."""
+    keeps_clear: Mask | None = None
+    """Which grasps stay away from the rest of the object: they go first among equals."""
     max_grasps: Annotated[int, Field(ge=0, le=100)] = 10
 
 

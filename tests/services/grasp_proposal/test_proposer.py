@@ -158,6 +158,24 @@ def test_says_how_much_of_what_is_held_is_in_the_focus() -> None:
     assert ((at_the_border > 0.05) & (at_the_border < 0.95)).all(axis=1).any()
 
 
+def test_says_which_hands_keep_away_from_the_rest() -> None:
+    along = CYLINDER.points @ about_z(0.5)[:, 1]
+    assert propose(CYLINDER).keeps_clear.all()
+    focus = along > -0.02
+    answer = propose(CYLINDER, focus=focus)
+    assert 0 < answer.keeps_clear.sum() < len(answer.grasps)
+    hand, rest = PARALLEL["panda"], CYLINDER.points[~focus]
+    for row, clear in zip(answer.grasps, answer.keeps_clear, strict=True):
+        local = transform_points(inverse(matrix_from_pose(row[:3], row[3:7])), rest)
+        x, y, z = np.abs(local[:, 0]), np.abs(local[:, 1]), local[:, 2]
+        front = hand.tip_beyond_tcp - hand.finger_length
+        between = (x < hand.finger_width / 2) & (y < row[7] / 2) & (z < hand.tip_beyond_tcp)
+        palm = (x < hand.palm_size[0] / 2) & (y < hand.palm_size[1] / 2) & (z < front + 0.009)
+        assert not (clear and (between | palm).any())
+    far = answer.grasps[:, :3] @ about_z(0.5)[:, 1] > 0.06
+    assert answer.keeps_clear[far].mean() > answer.keeps_clear[~far].mean()
+
+
 def test_no_two_grasps_are_alike() -> None:
     grasps = propose(CYLINDER).grasps
     turns = rotations_of(grasps)

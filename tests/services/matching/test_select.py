@@ -68,6 +68,13 @@ def test_a_grasp_well_inside_goes_before_one_at_the_border() -> None:
     assert answer.grasps[0, 8] == 0.5  # the score stays what it was: the chance to lift
 
 
+def test_a_way_in_that_comes_near_the_rest_goes_behind_its_equals() -> None:
+    grasps = grasps_at((0.01, 0.5), (0.02, 0.45), (0.03, 0.3))
+    clear = np.array([False, True, True])
+    assert select(grasps, keeps_clear=clear).indices.tolist() == [1, 0, 2]
+    assert select(grasps, keeps_clear=~clear).indices.tolist() == [0, 1, 2]
+
+
 def test_nothing_in_nothing_out() -> None:
     empty = select(np.empty((0, 9)))
     assert empty.grasps.shape == (0, 9)
@@ -105,6 +112,8 @@ def test_bad_input_is_named() -> None:
         select(np.full_like(grasp, np.inf))
     with pytest.raises(InvalidInput, match="on_region has 2 rows for 1 grasps"):
         select(grasp, on_region=np.ones((2, 3)))
+    with pytest.raises(InvalidInput, match="keeps_clear has 2 rows for 1 grasps"):
+        select(grasp, keeps_clear=np.ones(2, dtype=bool))
     with pytest.raises(InvalidInput, match="on_region must be finite"):
         select(grasp, on_region=np.full((1, 3), np.nan))
     with pytest.raises(InvalidInput, match="metres"):
