@@ -12,6 +12,7 @@ from experiments.primitives.class_tables import by_class, by_region, class_table
 from experiments.primitives.cut import ask_parts, cut
 from experiments.primitives.model import METHODS, Cut
 from experiments.primitives.plots import distribution, sizes, times
+from experiments.primitives.reference import reference_table, reference_times
 from experiments.primitives.sheet import contact_sheet, worst_views
 from experiments.primitives.tables import headline, regions_of, size_table, time_table
 from experiments.primitives.truth import TruePart, true_part
@@ -37,7 +38,13 @@ def run(context: Context) -> Findings:
     for method in METHODS:  # the first request of a process is slower
         ask_parts(context.sparge, first, method)
     cuts = each_view(both, sets, workers=1, console=context.console, describe="looking for parts")
-    tables = [headline(cuts), class_table(cuts), size_table(cuts), time_table(cuts)]
+    tables = [
+        headline(cuts),
+        class_table(cuts),
+        size_table(cuts),
+        time_table(cuts),
+        reference_table(reference_times(sets), cuts),
+    ]
     tables = [table for table in tables if table.rows]  # sizes of scans are not known
     for each in sets:
         own = [row for row in cuts if row.source == each.name]

@@ -170,10 +170,10 @@ def test_parts_of_two_views(make_context: MakeContext, few_things: ViewSet, tmp_
     (shown,) = context.sets
     context = replace(context, sets=(replace(shown, objects=objects),))
     findings = run(context)
-    table, classes, sizes, times, every_class, regions = findings.tables
+    table, classes, sizes, times, published, every_class, regions = findings.tables
     assert [row[1].split()[0] for row in table.rows] == list(METHODS)  # type: ignore[union-attr]
     assert all(row[2].total == 3 for row in table.rows)  # type: ignore[union-attr]
-    assert times.rows[0][1] == 2
+    assert times.rows[0][1] == published.rows[0][1] == 2
     assert {row[0] for row in classes.rows} == {row[0] for row in every_class.rows}
     assert {row[0] for row in classes.rows} == {"bottle", "can"}
     assert all(1 <= int(str(row[2])) <= 3 for row in sizes.rows)

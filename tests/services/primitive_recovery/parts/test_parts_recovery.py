@@ -4,12 +4,16 @@ from __future__ import annotations
 
 import numpy as np
 import pytest
+from numpy.typing import NDArray
 
 from services.primitive_recovery.recovery import PrimitiveRecovery
 from services.primitive_recovery.settings import PrimitiveRecoverySettings
 from shared.schemas.primitive import RecoverRequest, RecoverResponse
+from shared.schemas.scene import SupportPlane
 from shared.superquadric import radial_distance
-from tests.services.primitive_recovery.parts.views import Seen, seen
+from tests.services.primitive_recovery.parts.views import Seen, overlap, seen
+
+Array = NDArray[np.float64]
 
 
 @pytest.fixture(scope="module")
@@ -78,3 +82,45 @@ def test_another_object_in_front_is_another_matter(stage: PrimitiveRecovery) -> 
     assert answer.point_primitive is not None
     assert whole.point_primitive is not None
     assert (answer.point_primitive == whole.point_primitive[kept]).mean() > 0.9
+
+
+def lattice(size: tuple[float, float, float], corner: tuple[float, float, float]) -> Array:
+    """Return points 1.5 mm apart on the top and the front (least y) of a box on a table."""
+    x, y, z = (np.arange(0.0, max(each, 1e-9), 0.0015) for each in size)
+    top = np.stack(np.meshgrid(x, y, [size[2]], indexing="ij"), axis=-1).reshape(-1, 3)
+    front = np.stack(np.meshgrid(x, [0.0], z, indexing="ij"), axis=-1).reshape(-1, 3)
+    return np.vstack([top, front]) + corner
+
+
+@pytest.mark.parametrize("noise", [0.0, 0.0003])
+def test_a_blade_as_wide_as_its_handle_is_a_part(
+    stage: PrimitiveRecovery, noise: float, rng: np.random.Generator
+) -> None:
+    """2.5 mm on a table beside a handle of 16 mm: the width says nothing, the height does."""
+    handle = lattice((0.11, 0.028, 0.016), (0.0, 0.0, 0.0))
+    blade = lattice((0.16, 0.028, 0.0025), (0.11, 0.0, 0.0))
+    points = np.vstack([handle, blade])
+    viewpoint = np.array([0.1, -0.5, 0.6])
+    rays = points - viewpoint
+    points = points + noise * rng.normal(size=(len(points), 1)) * rays / np.linalg.norm(
+        rays, axis=1, keepdims=True
+    )
+    answer = stage.recover(
+        RecoverRequest(
+            points=points,
+            viewpoint=(0.1, -0.5, 0.6),
+            plane=SupportPlane(
+                normal=(0.0, 0.0, 1.0), offset=0.0, inliers=1000, residual_mm=1e3 * noise
+            ),
+        )
+    )
+    assert answer.point_primitive is not None
+    of_blade = np.arange(len(points)) >= len(handle)
+    assert overlap(answer.point_primitive, of_blade) > 0.9
+    assert overlap(answer.point_primitive, ~of_blade) > 0.9
+    found = np.median(points[answer.point_primitive == 0][:, 0])
+    blade_id = 0 if found > 0.11 else 1
+    thickness, width, length = np.sort(answer.primitives[blade_id].full_extents)
+    assert thickness < 0.005
+    assert width == pytest.approx(0.028, rel=0.15)
+    assert length == pytest.approx(0.16, rel=0.15)
