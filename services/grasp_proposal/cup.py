@@ -78,4 +78,4 @@ class Cup:
         aside = np.abs(rise[:, :2]) @ np.array(self.palm_size[:2]) / 2
         ends = np.array([self.length, self.length + self.palm_size[2] + self.pregrasp])
         palm = (height[:, None] - rise[:, 2:] * ends).min(axis=1) - aside
-        return np.minimum(lip, palm)
+        return np.asarray(np.minimum(lip, palm))

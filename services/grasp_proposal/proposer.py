@@ -31,7 +31,7 @@ Array = NDArray[np.float64]
 
 _ENOUGH = 16
 _AWAY = 0.010
-_TURNS_DEG = (0.0, 20.0, -20.0)
+_MORE_TURNS_DEG = (20.0, -20.0)
 
 
 class GraspProposer:
@@ -156,11 +156,13 @@ def _seek(
     rng: np.random.Generator,
     rejected: Counter[str],
 ) -> Contacts:
-    """Return the hands that pass, from more samples and turns while they are few."""
-    found = []
-    for turn_deg in _TURNS_DEG:
-        placed = candidates(workspace, hand, samples, rng, rejected, turn_deg)
-        found.append(passing(workspace, hand, placed, rejected))
+    """Return the hands that pass; while they are few, from more samples and turns."""
+    found = [
+        passing(workspace, hand, candidates(workspace, hand, samples, rng, rejected), rejected)
+    ]
+    for turn_deg in _MORE_TURNS_DEG:
         if sum(len(contacts.width) for contacts in found) >= _ENOUGH:
             break
+        placed = candidates(workspace, hand, -(-samples // 2), rng, rejected, turn_deg)
+        found.append(passing(workspace, hand, placed, rejected))
     return concatenated(found)
