@@ -128,9 +128,8 @@ def _margin(workspace: Workspace, cup: Cup, centres: Array, rotations: Array) ->
     lever = np.cross(workspace.centre_of_mass - centres, -workspace.up * weight)
     about = lever - np.einsum("si,si->s", lever, rotations[:, :, 2])[:, None] * rotations[:, :, 2]
     torque = np.maximum(np.linalg.norm(about, axis=1), 1e-9)
-    return np.minimum.reduce(
-        [cup.force / off, _FRICTION * cup.force / slide, cup.force * cup.radius / torque]
-    )
+    straight, along_lip = cup.force / off, _FRICTION * cup.force / slide
+    return np.asarray(np.minimum(np.minimum(straight, along_lip), cup.force * cup.radius / torque))
 
 
 def _score(cup: Cup, measured: Seal, margin: Array) -> Array:

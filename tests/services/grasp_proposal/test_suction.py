@@ -24,8 +24,15 @@ Array = NDArray[np.float64]
 
 SETTINGS = GraspProposalSettings()
 PROPOSER = GraspProposer(SETTINGS)
-VGC10 = load_grippers()["onrobot_vgc10"]
-assert isinstance(VGC10, SuctionGripper)
+
+
+def shipped_cup() -> SuctionGripper:
+    gripper = load_grippers()["onrobot_vgc10"]
+    assert isinstance(gripper, SuctionGripper)
+    return gripper
+
+
+VGC10 = shipped_cup()
 RADIUS = VGC10.cup_diameter / 2
 SIZE = (0.10, 0.16, 0.06)
 BOX = box(SIZE, turn=0.3)
