@@ -18,7 +18,10 @@ LEAST_RADIUS = 2.0
 
 
 def count_holes(
-    picture: Silhouette, labels: NDArray[np.int16], hidden: NDArray[np.bool_] | None = None
+    picture: Silhouette,
+    labels: NDArray[np.int16],
+    hidden: NDArray[np.bool_] | None = None,
+    seen: int | None = None,
 ) -> tuple[int, ...]:
     """Return for every part how many openings the sensor saw the background through.
 
@@ -33,17 +36,25 @@ def count_holes(
         Part of every point, from 0.
     hidden : (H, W) bool array, optional
         Cells where something else is in front: no background was seen there.
+    seen : int, optional
+        How many of the points, the first ones, the sensor saw; the others bridge what is
+        hidden. Openings that only such bridges part are one.
     """
     count = int(labels.max()) + 1
     holes = [0] * count
     gaps = holes_of(picture.closed, hidden)
-    number = int(gaps.max())
-    if number == 0:
+    if hidden is not None and seen is not None and seen < len(labels):
+        visible = np.zeros_like(picture.mask)
+        visible[picture.row[:seen], picture.column[:seen]] = True
+        joined, _ = ndimage.label((gaps > 0) | hidden | (picture.mask & ~visible))
+        gaps = np.where(gaps > 0, joined, 0)
+    numbers = np.unique(gaps[gaps > 0])
+    if not len(numbers):
         return tuple(holes)
     part = np.full(gaps.shape, -1, dtype=np.int16)
     part[picture.row, picture.column] = labels
     radius = distance_to_unset(gaps > 0)
-    for index in range(1, number + 1):
+    for index in numbers:
         gap = gaps == index
         around = part[grown(gap, 2) & ~gap]
         votes = np.bincount(around[around >= 0], minlength=count)

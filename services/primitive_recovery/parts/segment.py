@@ -107,7 +107,7 @@ def segment(
     labels = _largest_first(labels, seen)
     return Segmentation(
         labels=labels[:seen],
-        holes=count_holes(view.picture, labels, view.hidden.mask),
+        holes=count_holes(view.picture, labels, view.hidden.mask, seen),
         joints=joints_of(points, view.picture, labels),
         quality=tuple(quality),
         front=view.middle + view.hidden.front,

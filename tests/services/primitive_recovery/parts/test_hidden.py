@@ -144,6 +144,14 @@ def test_a_hole_beside_something_is_still_one(cutter: Cutter) -> None:
     assert sum(found.holes) == 1
 
 
+@pytest.mark.parametrize("place", [(0.4, 0.55), (0.3, 0.4), (-0.1, 0.3)])
+def test_a_ring_behind_a_bar_has_one_hole(place: tuple[float, float], cutter: Cutter) -> None:
+    points = disc()
+    points = points[np.hypot(points[:, 0], points[:, 1]) > 0.06]
+    visible, front = card(points, *place, (-0.5, 1.5))
+    assert sum(segment(points[visible], ORIGIN, None, cutter, front).holes) == 1
+
+
 def test_what_stands_behind_or_beside_hides_nothing(cutter: Cutter) -> None:
     view = seen("mug", 2001)
     _, front = card(view.points, 0.3, 0.6, (-0.5, 1.5))
