@@ -1,6 +1,6 @@
 # Two commands matter: `make run` and `make test`. `make help` lists the rest.
 .DEFAULT_GOAL := help
-.PHONY: help setup run serve test check experiments catalogue lock clean
+.PHONY: help setup run serve test check bench experiments catalogue lock clean
 
 SAMPLE ?= experiments/samples/bottle.npz
 TASK ?= pouring
@@ -25,6 +25,9 @@ check: setup  ## ruff and mypy --strict
 	@.venv/bin/ruff check .
 	@.venv/bin/ruff format --check .
 	@.venv/bin/mypy
+
+bench: setup  ## Reasoning under load: memory over 100,000 requests, decision times; half an hour
+	@.venv/bin/python -m tests.bench
 
 EXPERIMENTS ?= regions primitives grasps timing extension robustness shapes tuning demo
 

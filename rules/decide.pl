@@ -190,13 +190,17 @@ labels(Module, Asked, Labelled, Labels) :-
             ( holds_for_part(Module, partAffordance(ID, Affordance)),
               \+ memberchk(Affordance, Asked) ),
             Others),
-    append(Shown, Others, All),
-    sort(All, Pairs),
-    findall(ID, primitive_values(ID, _, _), IDs),
-    maplist(labels_of(Pairs), IDs, Labels).
+    findall(ID-none, primitive_values(ID, _, _), Parts),
+    append([Parts, Shown, Others], All),
+    keysort(All, Sorted),
+    group_pairs_by_key(Sorted, Grouped),
+    maplist(label, Grouped, Labels).
 
-labels_of(Pairs, ID, label{part: ID, affordances: Affordances}) :-
-    findall(A, member(ID-A, Pairs), Affordances).
+%   The names of the affordances in one text, apart by spaces: there may be hundreds.
+
+label(ID-[none|Affordances], label{part: ID, affordances: Names}) :-
+    sort(Affordances, Ordered),
+    atomic_list_concat(Ordered, ' ', Names).
 
 offered(Labelled, Affordance) :-
     memberchk((Affordance-_)-_, Labelled).

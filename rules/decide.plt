@@ -68,7 +68,7 @@ test(every_part_avoided, [setup(bottle), true(Outcome == every_part_avoided)]) :
     outcome(v2, handover, Outcome).
 test(a_blade_is_not_held, [setup(knife), true(Parts == [[1]])]) :-
     decided(v2, cutting, D), parts_of(D, Parts).
-test(labels, [setup(knife), true(Labels == [[cut, grasp], [grasp, pound]])]) :-
+test(labels, [setup(knife), true(Labels == ['cut grasp', 'grasp pound'])]) :-
     decided(v2, cutting, D),
     findall(As, ( member(L, D.labels), As = L.affordances ), Labels).
 test(the_most_certain_comes_first, [setup(two_handles), true(Parts == [[2], [1]])]) :-

@@ -25,6 +25,7 @@
             as_written/3,               % +Goal, +Names, -Text
             rule_problem/2,             % +Module, -Problem
             holds_for_part/2,           % +Module, ?Head
+            steps_hold_for_part/3,      % +Steps, +In, ?Head
             proof/3,                    % +Module, ?Head, -Trace
             attempt/3,                  % +Module, ?Head, -Trace
             closest/3,                  % +Module, +Heads, -Nearest
@@ -43,15 +44,17 @@
 :- use_module(library(pairs)).
 
 :- dynamic prepared/6.          % Module, Head, Steps, Parts, Title, Line
-:- dynamic remembering/0, remembered/2. % Question, Answer
 :- meta_predicate with_memory(0).
 :- dynamic defined_beside/3.    % Module, General, Other: a goal whose rules lie in Other
 
 %   further_rule(+Module, ?Head, -Steps, -Parts, -Title, -In): another rule that counts
 %   beside those of Module; its goals are called in the module In.
 
-:- multifile further_rule/6.
-:- dynamic further_rule/6.
+%   further_part(+Module, ?Head): Head, about a part, holds by one of these; as
+%   holds_for_part/2.
+
+:- multifile further_rule/6, further_part/2.
+:- dynamic further_rule/6, further_part/2.
 
                 /*******************************
                 *        READING RULES         *
@@ -294,11 +297,14 @@ called_rule(Module, Head, Called) :-
     prepared(Module, Head, Steps, _, _, _),
     member(enter(Called), Steps).
 
-rule(Module, Head, Steps, Parts, Title, Module) :-
-    prepared(Module, Head, Steps, Parts, Title, _).
+rule(Module, Head, Steps, Parts, Title, In) :-
+    file_rule(Module, Head, Steps, Parts, Title, In).
 rule(Module, Head, Steps, Parts, Title, In) :-
     further_rule(Module, Head, Steps, Parts, Title, In).
-rule(Module, Head, Steps, Parts, Title, Other) :-
+
+file_rule(Module, Head, Steps, Parts, Title, Module) :-
+    prepared(Module, Head, Steps, Parts, Title, _).
+file_rule(Module, Head, Steps, Parts, Title, Other) :-
     defined_beside(Module, Head, Other),
     prepared(Other, Head, Steps, Parts, Title, _).
 
@@ -312,7 +318,16 @@ rule(Module, Head, Steps, Parts, Title, Other) :-
 %   nothing is measured, and a rule gives each part once, on whatever other parts.
 
 holds_for_part(Module, Head) :-
-    rule(Module, Head, Steps, _, _, In),
+    file_rule(Module, Head, Steps, _, _, In),
+    steps_hold_for_part(Steps, In, Head).
+holds_for_part(Module, Head) :-
+    further_part(Module, Head).
+
+%!  steps_hold_for_part(+Steps, +In, ?Head) is nondet.
+%
+%   The steps of a rule with this head, asked in module In, hold.
+
+steps_hold_for_part(Steps, In, Head) :-
     arg(1, Head, Part),
     (   Steps = [find(Goal)|Rest],
         finds_part(Goal, ID),
@@ -332,8 +347,8 @@ holding_rule(Module, Head) :-
     holding(Steps, In).
 
 step_holds(find(Goal), Module) :- call(Module:Goal).
-step_holds(enter(Goal), Module) :- holding_rule(Module, Goal).
-step_holds(deny(Goal, _, _), Module) :- \+ holding_rule(Module, Goal).
+step_holds(enter(Goal), Module) :- solution(Module, Goal).
+step_holds(deny(Goal, _, _), Module) :- \+ provable(Module, Goal).
 step_holds(test(Goal, _, _), Module) :- call(Module:Goal).
 
 %!  proof(+Module, ?Head, -Trace) is nondet.
@@ -441,6 +456,10 @@ run([Step|Steps], Manner, Module, Tried, Tail) :-
 step(find(Goal), _, Module, Tried, Tried) :-
     call(Module:Goal).
 step(enter(Goal), Manner, Module, Tried, Tail) :-
+    (   Manner == strictly
+    ->  provable(Module, Goal)          % cheap, and mostly known
+    ;   true
+    ),
     rule(Module, Goal, Steps, _, _, In),
     run(Steps, Manner, In, Tried, Tail).
 step(deny(Goal, ID, Text), Manner, Module, [Tried|Tail], Tail) :-
@@ -493,38 +512,40 @@ goal_part(meets(ID, _), ID) :- integer(ID).
 denied(Module, Goal, Holds, Denied) :-
     remember(denied(Module, Goal), Denied, denied_now(Module, Goal, Holds, Denied)).
 
-%   Whether Goal holds by a rule, without working out why.
+%   Goal holds by a rule, for these parts; without working out why.
+
+solution(Module, Goal) :-
+    solutions(Module, Goal, Solutions),
+    member(Goal, Solutions).
 
 provable(Module, Goal) :-
-    remember(provable(Module, Goal), Answer,
-             (   rule(Module, Goal, Steps, _, _, In),
-                 run(Steps, strictly, In, _, [])
-             ->  Answer = yes
-             ;   Answer = no
-             )),
-    Answer == yes.
+    solutions(Module, Goal, [_|_]).
+
+solutions(Module, Goal, Solutions) :-
+    remember(solutions(Module, Goal), Solutions,
+             ( findall(Goal, holding_rule(Module, Goal), All), sort(All, Solutions) )).
 
 %!  with_memory(:Goal) is semidet.
 %
-%   Prove Goal once. What was denied on the way is remembered until it ends, for
-%   the parts do not change meanwhile: many rules deny the same.
+%   Prove Goal once. What entered rules gave and what was denied on the way is
+%   remembered until it ends, for the parts do not change meanwhile: many rules ask
+%   the same.
 
 with_memory(Goal) :-
     setup_call_cleanup(
-        assertz(remembering),
+        ( trie_new(Memory), nb_setval(explain_memory, Memory) ),
         once(Goal),
-        ( retractall(remembering), retractall(remembered(_, _)) )).
+        ( nb_delete(explain_memory), trie_destroy(Memory) )).
 
 %   Questions that differ only in the names of variables are the same.
 
 remember(Question, Answer, Goal) :-
-    (   remembering
-    ->  copy_term(Question, Key),
-        numbervars(Key, 0, _),
-        (   remembered(Key, Known)
+    (   nb_current(explain_memory, Memory)
+    ->  (   trie_lookup(Memory, Question, Known)
         ->  Answer = Known
-        ;   once(Goal),
-            assertz(remembered(Key, Answer))
+        ;   copy_term(Question, Key),
+            once(Goal),
+            trie_insert(Memory, Key, Answer)
         )
     ;   once(Goal)
     ).

@@ -23,6 +23,7 @@
 :- use_module(library(lists)).
 
 :- dynamic taught/7.            % Subject, Head, Knowledge, Steps, Parts, Title, Name
+:- dynamic holds/5.             % Subject, Head, Knowledge, Name, In
 :- dynamic runs_in/3.           % Module, In, Shipped
 
 %!  teach_rule(+Knowledge, +Rule) is det.
@@ -38,14 +39,32 @@ teach_rule(Knowledge, Rule) :-
     built(Rule, Head, Steps, Parts),
     version_name(Rule.head, Version),
     atomic_list_concat([learned, /, Rule.name, /, Version], Title),
-    assertz(taught(Rule.subject, Head, Knowledge, Steps, Parts, Title, Rule.name)).
+    assertz(taught(Rule.subject, Head, Knowledge, Steps, Parts, Title, Rule.name)),
+    (   plain_body(Steps, Body)
+    ->  true
+    ;   Body = steps_hold_for_part(Steps, In, Head)
+    ),
+    assertz((holds(Rule.subject, Head, Knowledge, Rule.name, In) :- Body)).
+
+%   A rule that only looks at parts and enters no other is kept as a clause as well: with
+%   many of them known, labels (explain:holds_for_part/2) need not interpret each.
+
+plain_body([find(Goal)|Steps], (predicates:Goal, once(Body))) :-
+    plain_steps(Steps, Body).
+
+plain_steps([], true).
+plain_steps([Step|Steps], (vocabulary:Goal, Body)) :-
+    ( Step = find(Goal) ; Step = test(Goal, _, _) ),
+    !,
+    plain_steps(Steps, Body).
 
 %!  unteach_rule(+Knowledge, ?Name) is det.
 %
 %   Forget a rule, or all when Name is unbound.
 
 unteach_rule(Knowledge, Name) :-
-    retractall(taught(_, _, Knowledge, _, _, _, Name)).
+    retractall(taught(_, _, Knowledge, _, _, _, Name)),
+    retractall(holds(_, _, Knowledge, Name, _)).
 
 version_name(affordTask, version1).
 version_name(partAffordance, version2).
@@ -135,10 +154,15 @@ test_or_enter(Goal, ID, Names, test(Goal, ID, Text)) :-
 %   that the files define.
 
 explain:further_rule(Module, Head, Steps, Parts, Title, In) :-
+    for(Head, Subject),
     knowledge_in_use(Knowledge),
     run_module(Module, In, _),
-    for(Head, Subject),
     taught(Subject, Head, Knowledge, Steps, Parts, Title, _).
+explain:further_part(Module, Head) :-
+    for(Head, Subject),
+    knowledge_in_use(Knowledge),
+    run_module(Module, In, _),
+    holds(Subject, Head, Knowledge, _, In).
 explain:further_rule(Module, Head, Steps, Parts, Title, In) :-
     runs_in(_, Module, In),
     explain:prepared(In, Head, Steps, Parts, Title, _).

@@ -21,6 +21,7 @@
             max_shape/1,                % ?ID
             min_shape/1,                % ?ID
             sorted_dimensions/2,        % +Dimensions, -Ascending
+            part_size/4,                % ?ID, ?Thickness, ?Width, ?Length
             ratio/2,                    % +Dimensions, -Ratio
             volume/2,                   % ?ID, -Volume
             bound/1,                    % @Term
@@ -44,6 +45,12 @@
 
 :- dynamic shape_probability/2.
 
+%!  part_size(?ID, ?Thickness, ?Width, ?Length) is nondet.
+%
+%   The part's dimensions, ascending; they are asked for so often that they are stated.
+
+:- dynamic part_size/4.
+
 %!  primitive_values(?ID, ?Dimensions, ?ShapeClass) is nondet.
 %
 %   The same part in the short form of chapter 5.
@@ -56,18 +63,22 @@ primitive_values(ID, Dimensions, ShapeClass) :-
 %   The sorted dimensions are at least the three values of Minimum, one by one.
 
 min_dimension(Dimensions, Minimum) :-
-    must_be_bound(Minimum),
-    sorted_dimensions(Dimensions, Sorted),
-    maplist(>=, Sorted, Minimum).
+    bounds(Minimum, LeastThickness, LeastWidth, LeastLength),
+    sorted_dimensions(Dimensions, [Thickness, Width, Length]),
+    Thickness >= LeastThickness,
+    Width >= LeastWidth,
+    Length >= LeastLength.
 
 %!  max_dimension(+Dimensions, +Maximum) is semidet.
 %
 %   The sorted dimensions are at most the three values of Maximum, one by one.
 
 max_dimension(Dimensions, Maximum) :-
-    must_be_bound(Maximum),
-    sorted_dimensions(Dimensions, Sorted),
-    maplist(=<, Sorted, Maximum).
+    bounds(Maximum, MostThickness, MostWidth, MostLength),
+    sorted_dimensions(Dimensions, [Thickness, Width, Length]),
+    Thickness =< MostThickness,
+    Width =< MostWidth,
+    Length =< MostLength.
 
 %!  min_ratio(+Dimensions, +Minimum) is semidet.
 %
@@ -111,8 +122,7 @@ sorted_dimensions(Dimensions, Ascending) :-
 %   Largest over smallest dimension, at least 1.
 
 ratio(Dimensions, Ratio) :-
-    max_list(Dimensions, Largest),
-    min_list(Dimensions, Smallest),
+    sorted_dimensions(Dimensions, [Smallest, _, Largest]),
     Ratio is Largest / Smallest.
 
 %!  volume(?ID, -Volume) is nondet.
@@ -133,14 +143,18 @@ volume(ID, Volume) :-
 
 bound(Term) :-
     is_list(Term),
-    length(Term, 3),
-    maplist(number, Term).
+    Term = [Thickness, Width, Length],
+    number(Thickness),
+    number(Width),
+    number(Length).
 
-must_be_bound(Term) :-
-    (   bound(Term)
-    ->  true
-    ;   type_error(list_of_three_numbers, Term)
-    ).
+bounds([Thickness, Width, Length], Thickness, Width, Length) :-
+    number(Thickness),
+    number(Width),
+    number(Length),
+    !.
+bounds(Term, _, _, _) :-
+    type_error(list_of_three_numbers, Term).
 
 %!  state_part(+ID, +Position, +Dimensions, +Exponents, +ShapeClass, +Probability) is det.
 %
@@ -148,6 +162,8 @@ must_be_bound(Term) :-
 
 state_part(ID, Position, Dimensions, Exponents, ShapeClass, Probability) :-
     assertz(primitive_values(ID, Position, Dimensions, Exponents, ShapeClass)),
+    sorted_dimensions(Dimensions, [Thickness, Width, Length]),
+    assertz(part_size(ID, Thickness, Width, Length)),
     assertz(shape_probability(ID, Probability)).
 
 %!  withdraw_parts is det.
@@ -156,4 +172,5 @@ state_part(ID, Position, Dimensions, Exponents, ShapeClass, Probability) :-
 
 withdraw_parts :-
     retractall(primitive_values(_, _, _, _, _)),
+    retractall(part_size(_, _, _, _)),
     retractall(shape_probability(_, _)).

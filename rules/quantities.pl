@@ -28,6 +28,14 @@
         offset(P, Q)                        how far the centre of P lies from that of Q
                                             along the longest axis of Q, relative to half
                                             of Q's length: above 1 past its end
+        likeness(P, Q)                      of two parts that meet: cross-section of the
+                                            slimmer over that of the stouter, across the
+                                            line that joins them; 1 where one goes on as
+                                            the other ends
+        filling(P, Q)                       of two parts that meet: how much of the box
+                                            around both their own boxes fill
+        bend(P, Q)                          of two parts that meet: angle between their
+                                            longest axes, 0 to 90
         seen(P)                             share of the object's points that belong to P
         top(P), bottom(P)                   heights above the support plane, if one is known
         holes(P)                            openings through the part
@@ -63,7 +71,8 @@
     stands/3,                   % ID, Bottom, Top
     holes/2,                    % ID, Count
     residual/2,                 % ID, Metres
-    meeting/2,                  % ID, Other: the smaller number first
+    meeting/2,                  % ID, Other
+    continuity/5,               % ID, Other, Likeness, Filling, Bend: of those that meet
     object_length/1.            % Metres
 
 %!  part(?ID) is nondet.
@@ -109,9 +118,9 @@ quantity(One / Other, Value, ratio) :-
     quantity(Other, V2, Unit),
     V2 > 0,
     Value is V1 / V2.
-quantity(thickness(ID), Value, m) :- sorted(ID, [Value, _, _]).
-quantity(width(ID), Value, m) :- sorted(ID, [_, Value, _]).
-quantity(length(ID), Value, m) :- sorted(ID, [_, _, Value]).
+quantity(thickness(ID), Value, m) :- part_size(ID, Value, _, _).
+quantity(width(ID), Value, m) :- part_size(ID, _, Value, _).
+quantity(length(ID), Value, m) :- part_size(ID, _, _, Value).
 quantity(volume(ID), Value, m3) :- volume(ID, Value).
 quantity(along(ID), Value, m) :- extents(ID, Value, _, _).
 quantity(across(ID), Value, m) :- extents(ID, _, Across, Depth), Value is max(Across, Depth).
@@ -125,6 +134,9 @@ quantity(end_gap(ID), Value, ratio) :-
     Value is max(0.0, min(From, Length - To) / Length).
 quantity(reach(ID, Other), Value, m) :- beside(ID, Other, Value, _).
 quantity(offset(ID, Other), Value, ratio) :- beside(ID, Other, _, Value).
+quantity(likeness(ID, Other), Value, ratio) :- passing(ID, Other, Value, _, _).
+quantity(filling(ID, Other), Value, ratio) :- passing(ID, Other, _, Value, _).
+quantity(bend(ID, Other), Value, deg) :- passing(ID, Other, _, _, Value).
 quantity(seen(ID), Value, ratio) :- seen(ID, Value).
 quantity(bottom(ID), Value, m) :- stands(ID, Value, _).
 quantity(top(ID), Value, m) :- stands(ID, _, Value).
@@ -133,9 +145,11 @@ quantity(object_length, Value, m) :- object_length(Value).
 quantity(object_width, Value, m) :-
     aggregate_all(max(Width), quantity(across(_), Width, m), Value).
 
-sorted(ID, Ascending) :-
-    primitive_values(ID, _, Dimensions, _, _),
-    sorted_dimensions(Dimensions, Ascending).
+passing(ID, Other, Likeness, Filling, Bend) :-
+    (   continuity(ID, Other, Likeness, Filling, Bend)
+    ->  true
+    ;   continuity(Other, ID, Likeness, Filling, Bend)
+    ).
 
 %!  quantity_part(+Quantity, -ID) is semidet.
 %
@@ -180,7 +194,7 @@ known_quantity(Quantity) :-
 layout_fact(Fact) :-
     member(Fact, [ object_length(_), extents(_, _, _, _), interval(_, _, _), slant(_, _),
                    beside(_, _, _, _), stands(_, _, _), holes(_, _), seen(_, _), residual(_, _),
-                   meeting(_, _) ]),
+                   meeting(_, _), continuity(_, _, _, _, _) ]),
     call(Fact).
 
 %!  state_layout(+Layout) is det.
@@ -192,7 +206,9 @@ state_layout(Layout) :-
     maplist(state_lie, Layout.parts),
     forall(member([ID, Other, Reach, Offset], Layout.pairs),
            assertz(beside(ID, Other, Reach, Offset))),
-    forall(member([ID, Other], Layout.meeting), assertz(meeting(ID, Other))).
+    forall(member([ID, Other, Likeness, Filling, Bend], Layout.meeting),
+           ( assertz(meeting(ID, Other)),
+             assertz(continuity(ID, Other, Likeness, Filling, Bend)) )).
 
 state_lie(Part) :-
     ID = Part.id,
@@ -221,4 +237,5 @@ withdraw_layout :-
     retractall(holes(_, _)),
     retractall(residual(_, _)),
     retractall(meeting(_, _)),
+    retractall(continuity(_, _, _, _, _)),
     retractall(object_length(_)).

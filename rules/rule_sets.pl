@@ -5,8 +5,10 @@
     partAffordance/2 clauses for affordances). Both may use other files of that
     folder; their clauses are part of the proofs.
 
-    Beside these, a version may say about a task, as clauses of its own:
+    Beside these, a version may say, as clauses of its own:
 
+        one_with(ID, Other)     the two are pieces of one part; the rules are asked about
+                                the whole
         held_together(Task)     all the parts that may be held for Task are one
                                 region; without it each is a region of its own
         goes_with(ID, Other)    part ID is held where Other is held (Version 2: unless

@@ -9,6 +9,7 @@
 :- module(service, [answer/2]).         % +Request, -Answer
 :- use_module(decide).
 :- use_module(explain, [called_rule/3, with_memory/1]).
+:- use_module(json_text).
 :- use_module(learned).
 :- use_module(predicates).
 :- use_module(quantities).
@@ -16,6 +17,7 @@
 :- use_module(rule_file).
 :- use_module(rule_sets).
 :- use_module(vocabulary, [words/1]).
+:- use_module(wholes).
 :- use_module(library(apply)).
 :- use_module(library(http/json)).
 :- use_module(library(lists)).
@@ -29,7 +31,7 @@
 
 answer(Request, Answer) :-
     with_output_to(string(_), replied(Request, Reply)),
-    atom_json_dict(Answer, Reply, [as(string), width(0)]).
+    json_text(Reply, Answer).
 
 replied(Request, Reply) :-
     catch(( understood(Request, Asked), performed(Asked, Reply) ),
@@ -116,7 +118,8 @@ operation(check_file, Asked, checked{problems: Problems, rules: Rules}) :-
 operation(vocabulary, _, vocabulary{words: Words}) :-
     words(Words).
 
-%   decide: the part to hold.
+%   decide: the part to hold; with `join`, first of all which parts are pieces of one. If any
+%   are, that is the answer, and the caller asks again about the wholes.
 
 operation(decide, Asked, Result) :-
     setup_call_cleanup(
@@ -143,12 +146,20 @@ state_lying(Asked) :-
 
 bounded_decision(Asked, Decision) :-
     Limit = Asked.max_inferences,
-    Goal = with_memory(decision(Asked.rule_set, Asked.version, Asked.task, Decision)),
+    Goal = with_memory(joined_or_decided(Asked, Decision)),
     call_with_inference_limit(Goal, Limit, Outcome),
     (   Outcome == inference_limit_exceeded
     ->  throw(too_long(Limit))
     ;   true
     ).
+
+joined_or_decided(Asked, joined{outcome: joined, groups: Groups, traces: Traces}) :-
+    Asked.join == true,
+    wholes(Asked.rule_set, Asked.version, Groups, Traces),
+    Groups = [_|_],
+    !.
+joined_or_decided(Asked, Decision) :-
+    decision(Asked.rule_set, Asked.version, Asked.task, Decision).
 
 %   The facts that the rules saw.
 

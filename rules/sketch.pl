@@ -42,8 +42,9 @@ sketch(Boxes) :-
             ( nth0(ID, Boxes, One), nth0(Other, Boxes, Two), ID \== Other,
               reach(One, Two, Reach), offset(One, Two, Offset) ),
             Pairs),
-    findall([ID, Other],
-            ( nth0(ID, Boxes, One), nth0(Other, Boxes, Two), ID < Other, meet(One, Two) ),
+    findall([ID, Other, Likeness, Filling, Bend],
+            ( nth0(ID, Boxes, One), nth0(Other, Boxes, Two), ID < Other, meet(One, Two),
+              continuity(One, Two, Likeness, Filling), bend(One, Two, Bend) ),
             Meeting),
     state_layout(layout{length: Length, parts: Lies, pairs: Pairs, meeting: Meeting}).
 
@@ -91,3 +92,43 @@ offset(box(C1, _, _), box(C2, S2, _), Offset) :-
 
 meet(box(C1, S1, _), box(C2, S2, _)) :-
     maplist([A, B, D1, D2]>>(abs(A - B) =< (D1 + D2) / 2 + 0.006), C1, C2, S1, S2).
+
+%   By the edges along each axis: from(A, B) of the one, from(C, D) of the other.
+
+continuity(box(C1, S1, _), box(C2, S2, _), Likeness, Filling) :-
+    maplist(edges, C1, S1, Edges1),
+    maplist(edges, C2, S2, Edges2),
+    maplist(gap, Edges1, Edges2, Gaps),
+    max_list(Gaps, Widest),
+    nth0(Axis, Gaps, Widest),
+    !,
+    findall(Ratio,
+            ( nth0(K, S1, D1), K \== Axis, nth0(K, S2, D2), Ratio is min(D1, D2) / max(D1, D2) ),
+            Ratios),
+    min_list(Ratios, Likeness),
+    maplist(span, Edges1, Edges2, Common),
+    maplist(product, [S1, S2, Common], [V1, V2, Around]),
+    Filling is (V1 + V2) / Around.
+
+edges(Centre, Size, from(Low, High)) :-
+    Low is Centre - Size / 2,
+    High is Centre + Size / 2.
+
+gap(from(A, B), from(C, D), Gap) :-
+    Gap is max(C - B, A - D).
+
+span(from(A, B), from(C, D), Span) :-
+    Span is max(B, D) - min(A, C).
+
+product(Numbers, Product) :-
+    foldl([N, P0, P]>>(P is P0 * N), Numbers, 1, Product).
+
+bend(box(_, S1, _), box(_, S2, _), Bend) :-
+    longest(S1, Axis1),
+    longest(S2, Axis2),
+    ( Axis1 == Axis2 -> Bend = 0.0 ; Bend = 90.0 ).
+
+longest(Size, Axis) :-
+    max_list(Size, Longest),
+    nth0(Axis, Size, Longest),
+    !.

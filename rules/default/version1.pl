@@ -5,10 +5,18 @@
     known is in handles.pl, for it is the same whatever the handle is used for.
 */
 
-:- module(default_version1, [affordTask/2, goes_with/2, held_together/1]).
+:- module(default_version1, [affordTask/2, goes_with/2, one_with/2, held_together/1]).
 :- use_module('../predicates').
 :- use_module('../quantities').
 :- use_module(handles).
+:- use_module(pieces).
+
+%!  one_with(?ID, ?Other) is nondet.
+%
+%   The two are pieces of one part, for all rules.
+
+one_with(ID, Other) :-
+    continues(ID, Other).
 
 %!  goes_with(?ID, ?Other) is nondet.
 %

@@ -12,10 +12,18 @@
       that carries them: the same block is no hammer without one.
 */
 
-:- module(default_version2, [partAffordance/2, goes_with/2, held_together/1, held_if_alone/1]).
+:- module(default_version2, [partAffordance/2, goes_with/2, one_with/2, held_together/1, held_if_alone/1]).
 :- use_module('../predicates').
 :- use_module('../quantities').
 :- use_module(handles).
+:- use_module(pieces).
+
+%!  one_with(?ID, ?Other) is nondet.
+%
+%   The two are pieces of one part, for all rules.
+
+one_with(ID, Other) :-
+    continues(ID, Other).
 
 %!  goes_with(?ID, ?Other) is nondet.
 %

@@ -5,34 +5,32 @@ Every number and every verdict comes from Prolog; only the wording is ours.
 
 from __future__ import annotations
 
-from collections.abc import Mapping, Sequence
+from collections.abc import Sequence
 
+from services.reasoning.wholes import Wholes
 from services.reasoning.wording import failing_wish, holding_clause, joined, size_of
 from shared.errors import JsonObject
-from shared.schemas.primitive import Primitive
-
-Parts = Mapping[int, Primitive]
 
 _SCALED = ("min_dimension", "max_dimension", "min_ratio", "max_ratio", "at_least", "at_most")
 _OBVIOUS = 0.99
 """A quantity that meets its bound with this support is not spelt out in the paragraph."""
 
 
-def explain_found(task: str, decision: JsonObject, parts: Parts) -> str:
+def explain_found(task: str, decision: JsonObject, parts: Wholes) -> str:
     """Say which part to hold, by which rules, and which condition was closest to failing."""
     region, traces = decision["regions"][0], decision["traces"]
-    sentences = [_what_to_hold(task, region), *(_why(trace, parts) for trace in traces)]
+    sentences = [_what_to_hold(task, region, parts), *(_why(trace, parts) for trace in traces)]
     close = _closest_call(traces)
     if close:
         sentences.append(close)
-    others = [part for other in decision["regions"][1:] for part in other["parts"]]
+    others = parts.ids([part for other in decision["regions"][1:] for part in other["parts"]])
     if others:
         sentences.append(f"{joined([f'Part {part}' for part in others])} would do as well.")
     return " ".join(sentences)
 
 
 def explain_miss(
-    task: str, why: str, miss: JsonObject | None, parts: Parts, lacking: Sequence[str]
+    task: str, why: str, miss: JsonObject | None, parts: Wholes, lacking: Sequence[str]
 ) -> str:
     """Say that nothing was found, and what came closest to changing that."""
     if miss is None:
@@ -54,15 +52,23 @@ def explain_miss(
     )
 
 
-def _what_to_hold(task: str, region: JsonObject) -> str:
-    numbers = region["parts"]
+def explain_joining(parts: Wholes) -> list[str]:
+    """Say which pieces were taken for one part, a sentence each."""
+    return [
+        f"Parts {joined(pieces)} continue each other and count as one, called part {whole}."
+        for whole, pieces in sorted(parts.pieces.items())
+    ]
+
+
+def _what_to_hold(task: str, region: JsonObject, parts: Wholes) -> str:
+    numbers = parts.ids(region["parts"])
     what = f"part {numbers[0]}" if len(numbers) == 1 else f"any of the parts {joined(numbers)}"
     label = region["affordance"]
     why = f": it is the part to {label.replace('_', ' ')}" if label else ""
     return f"Hold {what} for {task}{why}."
 
 
-def _why(trace: JsonObject, parts: Parts) -> str:
+def _why(trace: JsonObject, parts: Wholes) -> str:
     rule = trace["rule"]
     if rule.startswith("relations:"):
         return _relations(trace["conditions"])
@@ -138,6 +144,6 @@ def _closest_call(traces: Sequence[JsonObject]) -> str:
     return f"The closest call: part {closest['part']} {holding_clause(closest)}."
 
 
-def _named(part: int, parts: Parts) -> str:
-    primitive = parts[part]
+def _named(part: int, parts: Wholes) -> str:
+    primitive = parts.part(part)
     return f"part {part} (a {primitive.shape_class} of {size_of(primitive.full_extents)})"

@@ -75,7 +75,10 @@ def layout_facts(
             for j, other in enumerate(ids)
             if i != j
         ],
-        "meeting": [[ids[one], ids[other]] for one, other in layout.meeting],
+        "meeting": [
+            [ids[one], ids[other], *continuity]
+            for (one, other), continuity in zip(layout.meeting, layout.continuities, strict=True)
+        ],
     }
 
 

@@ -9,6 +9,8 @@ import numpy as np
 from numpy.typing import NDArray
 
 from services.reasoning.contact import touching
+from services.reasoning.continuity import Continuity, continuity
+from services.reasoning.span import support
 from shared.schemas.primitive import Joint, Primitive
 from shared.schemas.scene import SupportPlane
 from shared.superquadric import Superquadric
@@ -45,6 +47,8 @@ class Layout:
         Lowest and highest point of each part above the support plane, metres.
     meeting : tuple of (int, int)
         Which parts meet, the smaller index first.
+    continuities : tuple of Continuity
+        How far the two of each such pair look like pieces of one.
     """
 
     axes: Array
@@ -55,6 +59,7 @@ class Layout:
     offsets: Array
     heights: Array | None
     meeting: tuple[tuple[int, int], ...]
+    continuities: tuple[Continuity, ...]
 
 
 def layout_of(
@@ -89,6 +94,7 @@ def layout_of(
     heights = None
     if plane is not None:
         heights = _spans(shapes, positions, np.array(plane.normal)) + plane.offset
+    meeting = touching(primitives, joints)
     return Layout(
         axes=axes,
         extents=extents,
@@ -97,7 +103,8 @@ def layout_of(
         reaches=_reaches(shapes, apart),
         offsets=offsets,
         heights=heights,
-        meeting=touching(primitives, joints),
+        meeting=meeting,
+        continuities=tuple(continuity(shapes[one], shapes[other]) for one, other in meeting),
     )
 
 
@@ -117,7 +124,7 @@ def _main_axes(positions: Array, rotations: Array, dimensions: Array) -> Array:
 def _spans(shapes: Sequence[Superquadric], positions: Array, direction: Array) -> Array:
     """Return where each shape begins and ends along a direction (3,): (P, 2) metres."""
     middle = positions @ direction
-    half = np.array([_support(shape, direction[:, None])[0] for shape in shapes])
+    half = np.array([support(shape, direction[:, None])[0] for shape in shapes])
     return np.stack([middle - half, middle + half], axis=1)
 
 
@@ -126,26 +133,6 @@ def _reaches(shapes: Sequence[Superquadric], apart: Array) -> Array:
     distance = np.linalg.norm(apart, axis=2)
     direction = apart / np.maximum(distance, 1e-12)[:, :, None]
     half = np.stack(
-        [_support(shape, direction[row].T) for row, shape in enumerate(shapes)]
+        [support(shape, direction[row].T) for row, shape in enumerate(shapes)]
     )  # of i towards j, and by symmetry of i away from j
     return np.asarray(distance + half - half.T)
-
-
-def _support(shape: Superquadric, directions: Array) -> Array:
-    """Return how far a shape reaches from its centre along directions (3, K): (K,) metres.
-
-    The support function of a superellipsoid is the dual norm of its implicit
-    function: with exponent e, the p-norm of p = 2 / (2 - e).
-    """
-    scaled = np.abs(shape.rotation.T @ directions) * np.array(shape.semi_axes)[:, None]
-    e1, e2 = shape.exponents
-    flat = _norm(scaled[0], scaled[1], e2)
-    return _norm(flat, scaled[2], e1)
-
-
-def _norm(one: Array, other: Array, exponent: float) -> Array:
-    if exponent >= 1.99:  # an octahedron's dual is a cube
-        return np.maximum(one, other)
-    p = 2.0 / (2.0 - exponent)
-    largest = np.maximum(np.maximum(one, other), 1e-12)
-    return np.asarray(largest * ((one / largest) ** p + (other / largest) ** p) ** (1 / p))

@@ -3,13 +3,14 @@
 from __future__ import annotations
 
 import threading
+from collections.abc import Sequence
 from dataclasses import dataclass
 from typing import get_args
 
 from services.reasoning.admission import Admission
 from services.reasoning.archive import Archive
 from services.reasoning.enquiry import Enquiry
-from services.reasoning.explanation import explain_found, explain_miss
+from services.reasoning.explanation import explain_found, explain_joining, explain_miss
 from services.reasoning.facts import facts_of, layout_facts
 from services.reasoning.knowledge import Knowledge
 from services.reasoning.memory import Memory
@@ -18,6 +19,7 @@ from services.reasoning.proof import trace_of
 from services.reasoning.reasons import reason_for
 from services.reasoning.settings import ReasoningSettings
 from services.reasoning.shipped import RuleFiles, read_shipped
+from services.reasoning.wholes import Wholes, as_they_are, joined
 from shared.errors import JsonObject
 from shared.schemas.knowledge import (
     AskQuestion,
@@ -113,20 +115,32 @@ class Reasoner:
         warm = self._warm()
         engine, knowledge = warm.engine, warm.knowledge
         knowledge.refresh()
-        decision = engine.ask(
+        wholes = as_they_are(request.primitives, request.joints)
+        decision = self._ask(engine, knowledge.name, request, wholes, join=True)
+        joining: Sequence[JsonObject] = ()
+        if decision["outcome"] == "joined":
+            joining = decision["traces"]
+            wholes = joined(request.primitives, request.joints, decision["groups"])
+            decision = self._ask(engine, knowledge.name, request, wholes, join=False)
+        if decision["outcome"] == "unknown_task":
+            raise knowledge.unknown(request.task, request.reasoning, request.rule_set)
+        return _response(request, decision, wholes, joining)
+
+    def _ask(
+        self, engine: Prolog, knowledge: str, request: DecideRequest, parts: Wholes, *, join: bool
+    ) -> JsonObject:
+        return engine.ask(
             "decide",
             timeout_s=self._settings.max_wait_s,
-            knowledge=knowledge.name,
+            knowledge=knowledge,
             rule_set=request.rule_set,
             version=request.reasoning,
             task=request.task,
+            join=join,
             max_inferences=self._settings.max_inferences,
-            parts=facts_of(request.primitives, self._settings.max_primitives),
-            layout=layout_facts(request.primitives, request.joints, request.plane),
+            parts=facts_of(parts.primitives, self._settings.max_primitives),
+            layout=layout_facts(parts.primitives, parts.joints, request.plane),
         )
-        if decision["outcome"] == "unknown_task":
-            raise knowledge.unknown(request.task, request.reasoning, request.rule_set)
-        return _response(request, decision)
 
     def list_tasks(self, _: Nothing) -> TaskList:
         """Return every task that is known."""
@@ -207,12 +221,17 @@ def _warm(settings: ReasoningSettings, engine: Prolog) -> Warm:
     return Warm(engine, knowledge, archive, Enquiry(settings, knowledge, archive))
 
 
-def _response(request: DecideRequest, decision: JsonObject) -> DecideResponse:
+def _response(
+    request: DecideRequest,
+    decision: JsonObject,
+    wholes: Wholes,
+    joining: Sequence[JsonObject],
+) -> DecideResponse:
     found = decision["outcome"] == "found"
     reason = None if found else reason_for(request.task, decision)
     regions = [
         Region(
-            primitive_ids=region["parts"],
+            primitive_ids=wholes.ids(region["parts"]),
             affordance=region["affordance"],
             confidence=region["confidence"],
         )
@@ -223,23 +242,32 @@ def _response(request: DecideRequest, decision: JsonObject) -> DecideResponse:
         reason=reason,
         region=regions[0] if found else None,
         alternatives=tuple(regions[1:]),
-        labels={label["part"]: tuple(label["affordances"]) for label in decision["labels"]},
-        explanation=_explanation(request, decision, reason) if request.explain else None,
+        labels={
+            piece: tuple(label["affordances"].split())
+            for label in decision["labels"]
+            for piece in wholes.ids([label["part"]])
+        },
+        explanation=_explanation(request, decision, reason, wholes, joining)
+        if request.explain
+        else None,
     )
 
 
 def _explanation(
-    request: DecideRequest, decision: JsonObject, reason: Reason | None
+    request: DecideRequest,
+    decision: JsonObject,
+    reason: Reason | None,
+    wholes: Wholes,
+    joining: Sequence[JsonObject],
 ) -> Explanation:
-    parts = {primitive.id: primitive for primitive in request.primitives}
     miss = decision["miss"]
     if reason is None:
-        text = explain_found(request.task, decision, parts)
+        text = explain_found(request.task, decision, wholes)
     else:
-        text = explain_miss(request.task, reason.message, miss, parts, decision["lacking"])
+        text = explain_miss(request.task, reason.message, miss, wholes, decision["lacking"])
     return Explanation(
-        text=text,
+        text=" ".join([text, *explain_joining(wholes)]),
         facts=tuple(decision["facts"]),
-        rules=tuple(map(trace_of, decision["traces"])),
+        rules=tuple(map(trace_of, [*decision["traces"], *joining])),
         nearest_miss=None if miss is None else trace_of(miss),
     )
