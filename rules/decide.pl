@@ -10,6 +10,7 @@
         traces         the rules that hold and led to the first region
         miss           the nearest miss when nothing was found, else null
         lacking        when that is why, the affordances that no part has
+        too_thick      parts of the first region that do not go between the fingers
 
     A region is as certain as the least supported condition of what led to it
     (measurement.pl says what support is). Of several, the most certain is the
@@ -19,6 +20,7 @@
 :- module(decide, [decision/4]).                % +RuleSet, +Version, +Task, -Decision
 :- use_module(explain).
 :- use_module(predicates, [primitive_values/3]).
+:- use_module(quantities, [fits_gripper/1, quantity/3]).
 :- use_module(relations).
 :- use_module(rule_sets, [held_if_alone/3, held_together/3, rule_module/3]).
 :- use_module(library(apply)).
@@ -29,16 +31,35 @@
 %
 %   Version is v1 or v2.
 
-decision(RuleSet, v1, Task, Decision) :-
+decision(RuleSet, Version, Task, Decision) :-
+    by_version(RuleSet, Version, Task, Found),
+    too_thick(Found, Parts),
+    Decision = Found.put(too_thick, Parts).
+
+by_version(RuleSet, v1, Task, Decision) :-
     (   rule_module(RuleSet, v1, Module),
         has_rule(Module, affordTask(_, Task))
     ->  task_decision(RuleSet, Task, Decision)
     ;   Decision = decision{outcome: unknown_task}
     ).
-decision(RuleSet, v2, Task, Decision) :-
+by_version(RuleSet, v2, Task, Decision) :-
     (   task(Task)
     ->  affordance_decision(RuleSet, Task, Decision)
     ;   Decision = decision{outcome: unknown_task}
+    ).
+
+%   Parts of the answer that do not go between the fingers: no rule here refuses them, for
+%   the grasp may yet find a side that does, but it is told.
+
+too_thick(Decision, Parts) :-
+    (   get_dict(regions, Decision, [Region|_]),
+        quantity(gripper_opening, Opening, m)
+    ->  findall(thick{part: ID, thickness: Thickness, opening: Opening},
+                ( member(ID, Region.parts),
+                  \+ fits_gripper(ID),
+                  quantity(thickness(ID), Thickness, m) ),
+                Parts)
+    ;   Parts = []
     ).
 
 nothing(Outcome, Decision) :-
@@ -133,8 +154,17 @@ ranked(Pairs, Ranked) :-
     keysort(Keyed, Sorted),
     pairs_values(Sorted, Ranked).
 
-pair_uncertainty(_-Trace, Uncertainty) :-
-    uncertainty(Trace, Uncertainty).
+pair_uncertainty(ID-Trace, Uncertainty-Grip) :-
+    uncertainty(Trace, Uncertainty),
+    grip_rank(ID, Grip).
+
+%   Of equals, what goes between the fingers comes first.
+
+grip_rank(ID, Rank) :-
+    (   fits_gripper(ID)
+    ->  Rank = 0
+    ;   Rank = 1
+    ).
 
 uncertainty(Trace, Uncertainty) :-
     Uncertainty is 1 - Trace.certainty.
@@ -366,9 +396,11 @@ best_regions(Options, Best) :-
     pairs_values(Sorted, Ranked),
     first_of_each_part(Ranked, [], Best).
 
-option_uncertainty(Region-option(_, [Trace]), Whole-Own) :-
+option_uncertainty(Region-option(_, [Trace]), Whole-(Own-Grip)) :-
     Whole is 1 - Region.confidence,
-    Own is 1 - Trace.certainty.
+    Own is 1 - Trace.certainty,
+    [ID] = Region.parts,
+    grip_rank(ID, Grip).
 
 first_of_each_part([], _, []).
 first_of_each_part([Option|Rest], Seen, Best) :-

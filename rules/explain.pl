@@ -504,6 +504,7 @@ worked_out(deny(Goal, ID, Text), Module, Holds, Condition) :-
 goal_part(at_least(Quantity, _), ID) :- quantity_part(Quantity, ID).
 goal_part(at_most(Quantity, _), ID) :- quantity_part(Quantity, ID).
 goal_part(meets(ID, _), ID) :- integer(ID).
+goal_part(fits_gripper(ID), ID) :- integer(ID).
 
 %   A negation is as certain as what it denies is not: by the nearest miss if it
 %   holds, by the surest proof if it fails. Its margin is that of the condition which

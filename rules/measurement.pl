@@ -80,6 +80,16 @@ measure(meets(A, B), _, M) :-
     ( meets(A, B) -> Excess = 0.0 ; Excess = 1.0 ),
     M = m{kind: meets, measured: [A, B], required: null, margin: null, unit: null,
           support: null, excess: Excess, outside: []}.
+measure(fits_gripper(ID), _, M) :-
+    integer(ID),
+    quantity(thickness(ID), Thickness, m),
+    (   quantity(gripper_opening, Opening, m)
+    ->  Margin is Opening - Thickness,
+        quantity_spread(m, thickness(ID), Thickness, Spread),
+        on_a_scale(fits_gripper, Thickness, Opening, Margin, m, Spread, M)
+    ;   M = m{kind: fits_gripper, measured: Thickness, required: null, margin: null, unit: m,
+              support: null, excess: 0.0, outside: []}
+    ).
 measure(A \= B, _, M) :-
     integer(A),
     integer(B),

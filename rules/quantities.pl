@@ -39,6 +39,8 @@
         seen(P)                             share of the object's points that belong to P
         top(P), bottom(P)                   heights above the support plane, if one is known
         holes(P)                            openings through the part
+        gripper_opening                     widest opening of the gripper that was asked
+                                            for, if it is known
         object_length                       of the whole, along the main axis
         object_width                        the largest across(P)
         Q1 / Q2                             one quantity relative to another
@@ -49,6 +51,7 @@
             at_least/2,                 % +Quantity, +Bound
             at_most/2,                  % +Quantity, +Bound
             meets/2,                    % ?ID, ?Other
+            fits_gripper/1,             % ?ID
             quantity/3,                 % +Quantity, -Value, -Unit
             quantity_part/2,            % +Quantity, -ID
             known_quantity/1,           % @Quantity
@@ -73,7 +76,8 @@
     residual/2,                 % ID, Metres
     meeting/2,                  % ID, Other
     continuity/5,               % ID, Other, Likeness, Filling, Bend: of those that meet
-    object_length/1.            % Metres
+    object_length/1,            % Metres
+    gripper_opening/1.          % Metres
 
 %!  part(?ID) is nondet.
 %
@@ -106,6 +110,15 @@ meets(ID, Other) :-
     meeting(ID, Other).
 meets(ID, Other) :-
     meeting(Other, ID).
+
+%!  fits_gripper(?ID) is nondet.
+%
+%   The part is thin enough to go between the fingers, on one side at least. Where no
+%   opening is known, nothing speaks against any part.
+
+fits_gripper(ID) :-
+    part_size(ID, Thickness, _, _),
+    \+ ( gripper_opening(Opening), Thickness > Opening ).
 
 %!  quantity(+Quantity, -Value, -Unit) is semidet.
 %
@@ -141,6 +154,7 @@ quantity(seen(ID), Value, ratio) :- seen(ID, Value).
 quantity(bottom(ID), Value, m) :- stands(ID, Value, _).
 quantity(top(ID), Value, m) :- stands(ID, _, Value).
 quantity(holes(ID), Value, count) :- holes(ID, Value).
+quantity(gripper_opening, Value, m) :- gripper_opening(Value).
 quantity(object_length, Value, m) :- object_length(Value).
 quantity(object_width, Value, m) :-
     aggregate_all(max(Width), quantity(across(_), Width, m), Value).
@@ -192,16 +206,22 @@ known_quantity(Quantity) :-
 %   What is stated about how the parts lie.
 
 layout_fact(Fact) :-
-    member(Fact, [ object_length(_), extents(_, _, _, _), interval(_, _, _), slant(_, _),
+    member(Fact, [ object_length(_), gripper_opening(_), extents(_, _, _, _), interval(_, _, _), slant(_, _),
                    beside(_, _, _, _), stands(_, _, _), holes(_, _), seen(_, _), residual(_, _),
                    meeting(_, _), continuity(_, _, _, _, _) ]),
     call(Fact).
 
 %!  state_layout(+Layout) is det.
 %
-%   Tell the rules how the parts lie: a dict of length, parts, pairs and meeting.
+%   Tell the rules how the parts lie: a dict of length, parts, pairs, meeting and the
+%   gripper's opening (null if it is not known).
 
 state_layout(Layout) :-
+    (   get_dict(opening, Layout, Opening),
+        number(Opening)
+    ->  assertz(gripper_opening(Opening))
+    ;   true
+    ),
     assertz(object_length(Layout.length)),
     maplist(state_lie, Layout.parts),
     forall(member([ID, Other, Reach, Offset], Layout.pairs),
@@ -238,4 +258,5 @@ withdraw_layout :-
     retractall(residual(_, _)),
     retractall(meeting(_, _)),
     retractall(continuity(_, _, _, _, _)),
-    retractall(object_length(_)).
+    retractall(object_length(_)),
+    retractall(gripper_opening(_)).

@@ -71,6 +71,8 @@ fixed(largest, [part(ID, _, _)], nothing, _, max_shape(ID),
       "no other part encloses more").
 fixed(smallest, [part(ID, _, _)], nothing, _, min_shape(ID),
       "no other part encloses less").
+fixed(fits_gripper, [part(ID, _, _)], nothing, _, fits_gripper(ID),
+      "goes between the fingers of the gripper asked for, if its opening is known").
 fixed(affords, [part(ID, _, _)], affordance, Affordance, partAffordance(ID, Affordance),
       "counts as this affordance, by any rule for it").
 fixed(affords_not, [part(ID, _, _)], affordance, Affordance, \+ partAffordance(ID, Affordance),
@@ -98,6 +100,8 @@ measured(end_gap, ID, end_gap(ID), 0, 1, "distance from the nearer end, as a sha
 measured(seen, ID, seen(ID), 0, 1, "share of the points of the object that belong to it").
 measured(bottom, ID, bottom(ID), -10, 10, "lowest point above the support, in metres").
 measured(top, ID, top(ID), -10, 10, "highest point above the support, in metres").
+measured(gripper_share, ID, thickness(ID) / gripper_opening, 0, 1000,
+         "thickness over the gripper's widest opening; fails if that is not known").
 measured(holes, ID, holes(ID), 0, 100, "openings through the part").
 
 %   compared(Name, A, B, Term, [Low, High], Says): a quantity of two parts.

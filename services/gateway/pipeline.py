@@ -57,6 +57,8 @@ class _Run:
     stages: Mapping[str, StageClient]
     deadline: float
     timings_ms: dict[str, float] = field(default_factory=dict)
+    gripper_opening: float | None = None
+    """Of the gripper asked for, metres; None for one without fingers."""
 
     async def call(
         self, route: Route[Request, Response], request: Request, timed_as: str | None = None
@@ -146,6 +148,14 @@ class Pipeline:
         )
         listed = await run.call(LIST_GRIPPERS, Nothing(), CHECKS)
         grippers = sorted(gripper.name for gripper in listed.grippers)
+        run.gripper_opening = next(
+            (
+                each.max_opening
+                for each in listed.grippers
+                if each.kind == "parallel" and each.name == question.gripper
+            ),
+            None,
+        )
         gripper = question.gripper
         if gripper not in grippers:
             raise UnknownGripper(
@@ -189,6 +199,7 @@ class Pipeline:
                 primitives=recovered.primitives,
                 joints=recovered.joints,
                 plane=scene.plane,
+                gripper_opening=run.gripper_opening,
                 explain=request.parameters.explain,
             ),
         )

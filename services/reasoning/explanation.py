@@ -8,6 +8,7 @@ from __future__ import annotations
 from collections.abc import Sequence
 
 from services.reasoning.wholes import Wholes
+from services.reasoning.phrases import millimetres
 from services.reasoning.wording import failing_wish, holding_clause, joined, size_of
 from shared.errors import JsonObject
 
@@ -23,6 +24,7 @@ def explain_found(task: str, decision: JsonObject, parts: Wholes) -> str:
     close = _closest_call(traces)
     if close:
         sentences.append(close)
+    sentences += [_too_thick(each) for each in decision["too_thick"]]
     others = parts.ids([part for other in decision["regions"][1:] for part in other["parts"]])
     if others:
         sentences.append(f"{joined([f'Part {part}' for part in others])} would do as well.")
@@ -127,6 +129,15 @@ def _nearly_free(condition: JsonObject) -> str:
     tight = f", least clearly because it {holding_clause(because)}" if because else ""
     part, label = condition["part"], condition["measured"]
     return f"Nearest to being held is part {part}: it counts as {label}{tight}."
+
+
+def _too_thick(thick: JsonObject) -> str:
+    thickness, opening = thick["thickness"], thick["opening"]
+    return (
+        f"Part {thick['part']} would fit between the fingers if it were "
+        f"{millimetres(thickness - opening)} mm thinner ({millimetres(thickness)} mm where the "
+        f"gripper opens {millimetres(opening)} mm)."
+    )
 
 
 def _closest_call(traces: Sequence[JsonObject]) -> str:

@@ -45,7 +45,10 @@ def facts_of(primitives: Sequence[Primitive], max_primitives: int) -> list[JsonO
 
 
 def layout_facts(
-    primitives: Sequence[Primitive], joints: Sequence[Joint], plane: SupportPlane | None
+    primitives: Sequence[Primitive],
+    joints: Sequence[Joint],
+    plane: SupportPlane | None,
+    gripper_opening: float | None = None,
 ) -> JsonObject | None:
     """Return the arguments of the facts of rules/quantities.pl; None without primitives."""
     if not primitives:
@@ -55,6 +58,7 @@ def layout_facts(
     reaches, offsets = layout.reaches.tolist(), layout.offsets.tolist()
     seen = max(1, sum(primitive.support for primitive in primitives))
     return {
+        "opening": gripper_opening,
         "length": float(layout.intervals.max()),
         "parts": [
             {

@@ -27,6 +27,7 @@ _NOUNS = {
     "bend": "angle to part {}",
     "seen": "share of the points",
     "holes": "number of openings",
+    "gripper_opening": "opening of the gripper",
     "object_length": "length of the object",
     "object_width": "width of the object",
 }

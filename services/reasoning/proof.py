@@ -54,6 +54,8 @@ def _texts(condition: JsonObject) -> tuple[str, str]:
         case "at_least" | "at_most" if measured is not None:
             sign, unit = (">=" if kind == "at_least" else "<="), _UNITS[condition["unit"]]
             return f"{measured:.4g}{unit}", f"{sign} {required:.4g}{unit}"
+        case "fits_gripper":
+            return f"{measured:.4g} m", "any" if required is None else f"<= {required:.4g} m"
         case "meets":
             return ("touching" if condition["holds"] else "apart"), "touching"
         case "absent":

@@ -139,7 +139,9 @@ class Reasoner:
             join=join,
             max_inferences=self._settings.max_inferences,
             parts=facts_of(parts.primitives, self._settings.max_primitives),
-            layout=layout_facts(parts.primitives, parts.joints, request.plane),
+            layout=layout_facts(
+                parts.primitives, parts.joints, request.plane, request.gripper_opening
+            ),
         )
 
     def list_tasks(self, _: Nothing) -> TaskList:

@@ -54,6 +54,11 @@ def holding_clause(condition: JsonObject) -> str:
             return f"has {measured_as(condition['quantity'], value, bound)}"
         case "meets":
             return f"meets part {condition['measured'][1]}"
+        case "fits_gripper" if required is not None:
+            return (
+                f"fits between the fingers ({millimetres(condition['measured'])} mm where the "
+                f"gripper opens {millimetres(required)} mm)"
+            )
         case "absent" if condition["part"] is not None:
             return f"does not count as {condition['measured']}"
         case "other":
@@ -101,6 +106,12 @@ def failing_wish(condition: JsonObject, *, own: bool) -> str:
             return f"{who} were a {' or '.join(required)} instead of a {condition['measured']}"
         case "at_least" | "at_most" if condition["measured"] is not None:
             return _quantity_wish(condition, who)
+        case "fits_gripper":
+            return (
+                f"{who} were {millimetres(-condition['margin'])} mm thinner, to fit between the "
+                f"fingers ({apart(condition['measured'] * 1e3, required * 1e3)} mm where the "
+                f"gripper opens {millimetres(required)} mm)"
+            )
         case "meets":
             return f"{who} met part {condition['measured'][1]}"
         case "absent" if condition["part"] is None:

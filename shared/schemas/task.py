@@ -4,7 +4,7 @@ from __future__ import annotations
 
 from typing import Annotated, Literal
 
-from pydantic import Field
+from pydantic import Field, FiniteFloat
 
 from shared.schemas.fields import Name, TaskText
 from shared.schemas.primitive import Joint, Primitive
@@ -82,6 +82,8 @@ class DecideRequest(Message):
     """Which parts meet, where the recovery knows."""
     plane: SupportPlane | None = None
     """What the object stands on, for heights above it."""
+    gripper_opening: Annotated[FiniteFloat, Field(gt=0)] | None = None
+    """Widest opening of the gripper in metres; None: unknown, and no rule may mind."""
     explain: bool = True
 
 

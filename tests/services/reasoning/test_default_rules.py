@@ -146,9 +146,7 @@ def test_a_handle_in_two_pieces_is_one_region(
 ) -> None:
     response = decide(reasoner, task, version, halves(primitives, cut))
     assert held(response) == (cut, cut + 100)
-    assert {each.primitive_ids for each in response.alternatives} == {(cut,), (cut + 100,)}
-    assert response.region is not None
-    assert response.region.confidence <= min(each.confidence for each in response.alternatives)
+    assert response.alternatives == ()  # half of it is no alternative
 
 
 @pytest.mark.parametrize("version", VERSIONS)
