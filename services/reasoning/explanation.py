@@ -7,8 +7,8 @@ from __future__ import annotations
 
 from collections.abc import Sequence
 
-from services.reasoning.wholes import Wholes
 from services.reasoning.phrases import millimetres
+from services.reasoning.wholes import Wholes
 from services.reasoning.wording import failing_wish, holding_clause, joined, size_of
 from shared.errors import JsonObject
 

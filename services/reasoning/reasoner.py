@@ -3,12 +3,13 @@
 from __future__ import annotations
 
 import threading
-from collections.abc import Sequence
+from collections.abc import Callable, Mapping, Sequence
 from dataclasses import dataclass
 from typing import get_args
 
 from services.reasoning.admission import Admission
 from services.reasoning.archive import Archive
+from services.reasoning.confidence import Map, read_maps
 from services.reasoning.enquiry import Enquiry
 from services.reasoning.explanation import explain_found, explain_joining, explain_miss
 from services.reasoning.facts import facts_of, layout_facts
@@ -65,6 +66,7 @@ class Warm:
     knowledge: Knowledge
     archive: Archive
     enquiry: Enquiry
+    confidence: Mapping[str, Map]
 
 
 class Reasoner:
@@ -124,7 +126,8 @@ class Reasoner:
             decision = self._ask(engine, knowledge.name, request, wholes, join=False)
         if decision["outcome"] == "unknown_task":
             raise knowledge.unknown(request.task, request.reasoning, request.rule_set)
-        return _response(request, decision, wholes, joining)
+        confidence = warm.confidence.get(request.rule_set, float)
+        return _response(request, decision, wholes, joining, confidence)
 
     def _ask(
         self, engine: Prolog, knowledge: str, request: DecideRequest, parts: Wholes, *, join: bool
@@ -220,7 +223,8 @@ def _warm(settings: ReasoningSettings, engine: Prolog) -> Warm:
     admission = Admission(shipped, {word.name: word for word in words}, settings.max_learned)
     memory = Memory(settings, engine, admission)
     knowledge, archive = Knowledge(memory, shipped, words), Archive(memory, shipped, words)
-    return Warm(engine, knowledge, archive, Enquiry(settings, knowledge, archive))
+    maps = {} if settings.confidence_file is None else read_maps(settings.confidence_file)
+    return Warm(engine, knowledge, archive, Enquiry(settings, knowledge, archive), maps)
 
 
 def _response(
@@ -228,6 +232,7 @@ def _response(
     decision: JsonObject,
     wholes: Wholes,
     joining: Sequence[JsonObject],
+    confidence: Callable[[float], float],
 ) -> DecideResponse:
     found = decision["outcome"] == "found"
     reason = None if found else reason_for(request.task, decision)
@@ -235,7 +240,7 @@ def _response(
         Region(
             primitive_ids=wholes.ids(region["parts"]),
             affordance=region["affordance"],
-            confidence=region["confidence"],
+            confidence=confidence(region["confidence"]),
         )
         for region in decision["regions"]
     ]

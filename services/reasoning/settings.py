@@ -6,6 +6,7 @@ from pathlib import Path
 
 from pydantic import Field
 
+from services.reasoning.confidence import MAPS
 from shared.settings import PROJECT_ROOT, ServiceSettings, environment
 
 
@@ -32,6 +33,8 @@ class ReasoningSettings(ServiceSettings):
     max_inferences : int
         Prolog gives up on a request after so many; an ordinary one takes a few
         ten thousand.
+    confidence_file : Path or None
+        How certainties of proofs become confidences; None: they stay as they are.
     max_wait_s : float
         How long a request may wait for Prolog and its answer.
     """
@@ -46,4 +49,5 @@ class ReasoningSettings(ServiceSettings):
     max_rows: int = Field(default=1000, gt=0)
     max_primitives: int = Field(default=32, gt=0)
     max_inferences: int = Field(default=20_000_000, gt=0)
+    confidence_file: Path | None = MAPS
     max_wait_s: float = Field(default=20.0, gt=0)
