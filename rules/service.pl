@@ -154,7 +154,7 @@ bounded_decision(Asked, Decision) :-
     ).
 
 joined_or_decided(Asked, joined{outcome: joined, groups: Groups, traces: Traces}) :-
-    Asked.join == true,
+    get_dict(join, Asked, true),
     wholes(Asked.rule_set, Asked.version, Groups, Traces),
     Groups = [_|_],
     !.

@@ -116,6 +116,12 @@ compared(relative_volume, A, B, volume(A) / volume(B), [0, 1000000],
          "volume of the first over that of the second").
 compared(relative_stretch, A, B, stretch(A) / stretch(B), [0, 1000],
          "stretch of the first over that of the second").
+compared(likeness, A, B, likeness(A, B), [0, 1],
+         "of two that meet: smaller cross-section over the larger, across the line between them").
+compared(filling, A, B, filling(A, B), [0, 10],
+         "of two that meet: share of the box around both that their boxes fill").
+compared(bend, A, B, bend(A, B), [0, 90],
+         "of two that meet: angle between their longest axes, in degrees").
 compared(reach, A, B, reach(A, B), [-10, 10],
          "how far the first sticks out of the second, in metres").
 compared(offset, A, B, offset(A, B), [0, 1000],
