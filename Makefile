@@ -1,6 +1,6 @@
 # Two commands matter: `make run` and `make test`. `make help` lists the rest.
 .DEFAULT_GOAL := help
-.PHONY: help setup run serve test check bench experiments catalogue lock clean
+.PHONY: help setup run serve test check bench experiments catalogue train-grasps lock clean
 
 SAMPLE ?= experiments/samples/bottle.npz
 TASK ?= pouring
@@ -36,6 +36,20 @@ experiments: setup  ## Every table of the thesis beside ours, in results/report.
 
 catalogue: setup  ## The contact sheet of all objects, docs/images/catalogue.png
 	@.venv/bin/python -m experiments.contact_sheet
+
+TRIALS ?= out/trials
+OBJECTS ?= 260
+TRIAL_PORT ?= 8399
+TORCH ?= torch==2.13.0 --extra-index-url https://download.pytorch.org/whl/cpu
+
+train-grasps: setup  ## The scorer of grasps anew: trials in physics, then training
+	@.venv/bin/pip install --quiet --require-hashes -r requirements-training.lock
+	@.venv/bin/pip install --quiet $(TORCH)
+	@SPARGE_EXECUTION_WORKERS=2 .venv/bin/sparge serve --port $(TRIAL_PORT) --log-level warning & \
+	backend=$$!; trap "kill $$backend" EXIT; \
+	.venv/bin/python -m experiments.trials $(TRIALS) --url http://127.0.0.1:$(TRIAL_PORT) \
+		--wait 300 --workers 2 --objects $(OBJECTS)
+	@.venv/bin/python -m services.grasp_proposal.train $(TRIALS)
 
 lock: setup  ## Write the dependency locks anew from pyproject.toml
 	@docker/lock.sh

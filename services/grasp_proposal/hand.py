@@ -10,11 +10,11 @@ from shared.schemas.gripper import ParallelGripper
 
 @dataclass(frozen=True)
 class Hand:
-    """A gripper and the distances that it keeps, metres.
+    """A gripper and the distances that it keeps, metres and newtons.
 
     Attributes
     ----------
-    max_opening, finger_width, finger_thickness, finger_length, tip_beyond_tcp
+    max_opening, finger_width, finger_thickness, finger_length, tip_beyond_tcp, force
         As in `shared.schemas.gripper.ParallelGripper`.
     palm_size : tuple of float
         Along x, y, z.
@@ -32,6 +32,7 @@ class Hand:
     support_clearance: float
     palm_clearance: float
     pregrasp: float
+    force: float
 
     @classmethod
     def of(cls, gripper: ParallelGripper, settings: GraspProposalSettings) -> Hand:
@@ -47,6 +48,7 @@ class Hand:
             support_clearance=settings.support_clearance_m,
             palm_clearance=settings.palm_clearance_m,
             pregrasp=settings.pregrasp_distance_m,
+            force=gripper.force,
         )
 
     @property

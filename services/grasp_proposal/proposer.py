@@ -9,12 +9,14 @@ from numpy.typing import NDArray
 
 from services.grasp_proposal.boxes import comes_near, support_clearance
 from services.grasp_proposal.candidates import candidates
+from services.grasp_proposal.closing_region import upright
 from services.grasp_proposal.contacts import Contacts, concatenated
 from services.grasp_proposal.cup import Cup
 from services.grasp_proposal.diversity import distinct
 from services.grasp_proposal.hand import Hand
+from services.grasp_proposal.learned import LearnedScorer
 from services.grasp_proposal.passing import passing
-from services.grasp_proposal.scorer import score, tool_centre
+from services.grasp_proposal.scorer import tool_centre
 from services.grasp_proposal.settings import GraspProposalSettings
 from services.grasp_proposal.suction import propose_suction
 from services.grasp_proposal.visibility import SightMap
@@ -35,11 +37,12 @@ _MORE_TURNS_DEG = (20.0, -20.0)
 
 
 class GraspProposer:
-    """Proposes grasps; holds nothing but settings and grippers, so calls may overlap."""
+    """Proposes grasps; holds settings, grippers and a network alone, so calls may overlap."""
 
     def __init__(self, settings: GraspProposalSettings) -> None:
         self._settings = settings
         self._grippers = load_grippers(settings.grippers_dir)
+        self._scorer = LearnedScorer()
 
     def list_grippers(self, _: Nothing) -> GripperList:
         """Return the known grippers, in alphabetical order."""
@@ -103,11 +106,11 @@ class GraspProposer:
         """Return grasp rows (G, 9), what they hold in focus (G, 3), and if they keep clear (G,)."""
         if not len(contacts.width):
             return np.empty((0, 9)), np.empty((0, 3)), np.empty(0, dtype=np.bool_)
-        _, palm = support_clearance(contacts.placed, hand, contacts.opening, workspace)
+        tips, palm = support_clearance(contacts.placed, hand, contacts.opening, workspace)
         sight = None
         if workspace.viewpoint is not None:
             sight = SightMap.of(workspace.points, workspace.viewpoint)
-        scores = score(workspace, hand, contacts, palm, sight)
+        scores = self._scorer.score(workspace, hand, contacts, palm, tips, sight)
         order = np.argsort(-scores, kind="stable")
         contacts = contacts.take(order)
         rotations = upright(contacts.placed.rotation)
@@ -134,18 +137,6 @@ def _rows(
             widths,
             scores,
         ]
-    )
-
-
-def upright(rotations: Array) -> Array:
-    """Return rotations (G, 3, 3) turned by half a turn about z where y points to -y.
-
-    A parallel gripper does not know its left finger from its right.
-    """
-    flip = (rotations[:, 1, 1] < 0) | ((rotations[:, 1, 1] == 0) & (rotations[:, 0, 1] < 0))
-    sign = np.where(flip, -1.0, 1.0)[:, None]
-    return np.stack(
-        [rotations[:, :, 0] * sign, rotations[:, :, 1] * sign, rotations[:, :, 2]], axis=2
     )
 
 

@@ -14,7 +14,7 @@ from shared.geometry.rotation import frame_from_z
 Array = NDArray[np.float64]
 
 _MAX_CELLS = 512
-_TOLERANCE = 0.004
+TOLERANCE = 0.004
 _PROBES = 500
 
 
@@ -77,5 +77,5 @@ class SightMap:
             .astype(np.int64)
             .transpose(-1, *range(cells.ndim - 1))
         )
-        behind = seen[..., 2] - self.nearest[v, u] - _TOLERANCE
+        behind = seen[..., 2] - self.nearest[v, u] - TOLERANCE
         return np.where(inside & (behind > 0), behind, 0.0)

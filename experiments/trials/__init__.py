@@ -1,0 +1,1 @@
+"""Grasps tried out in physics, to train the scorer of grasps on: `python -m experiments.trials`."""

@@ -1,0 +1,109 @@
+"""Random objects on a table, as a camera of random noise sees them."""
+
+from __future__ import annotations
+
+from dataclasses import dataclass, replace
+
+import numpy as np
+import open3d as o3d
+from numpy.typing import NDArray
+
+from experiments.camera import StereoNoise
+from experiments.catalogue import CatalogueObject, variant
+from experiments.dataset.drop import Body
+from experiments.dataset.make import make_view
+from experiments.dataset.randomness import generator
+from experiments.framework import ShownView
+from experiments.parts.warp import warped
+from shared.schemas.fields import Vector3
+
+Array = NDArray[np.float64]
+
+PLAIN = 0.4
+"""Share of objects that are not warped."""
+CLEAN = 0.35
+"""Share of views without noise."""
+TRIANGLES = 1500
+"""Of the mesh that is executed: finer ones are merely slower to cut into convex parts."""
+SIGMA_AT_1M = (0.5e-3, 2.5e-3)
+"""Metres: from which the noise of the depth at 1 m is drawn."""
+
+
+@dataclass(frozen=True)
+class Scene:
+    """An object before the camera.
+
+    Attributes
+    ----------
+    thing : CatalogueObject
+    view : int
+        Which view of it.
+    shown : ShownView
+        What the camera sees.
+    vertices : (V, 3) array
+        The object's true mesh, metres, in its own frame.
+    faces : (F, 3) int32 array
+        Its triangles, at most `TRIANGLES`.
+    up : tuple of float
+        Against gravity, in the camera's frame.
+    sigma_at_1m : float
+        Of the sensor's noise, metres; 0: a clean view.
+    """
+
+    thing: CatalogueObject
+    view: int
+    shown: ShownView
+    vertices: Array
+    faces: NDArray[np.int32]
+    up: Vector3
+    sigma_at_1m: float
+
+
+def draw_object(class_name: str, number: int, seed: int) -> CatalogueObject:
+    """Return object `number` of a class; it depends on the three arguments alone."""
+    rng = generator(seed, f"object to try grasps on: {class_name}", number)
+    thing = variant(class_name, rng)
+    if rng.random() > PLAIN:
+        thing = warped(thing, rng)
+    return replace(thing, name=f"{class_name}-{number}")
+
+
+def draw_scene(body: Body, view: int, seed: int) -> Scene:
+    """Return view `view` of an object on a table.
+
+    Raises
+    ------
+    InvalidInput
+        The object was warped out of what fits into the view.
+    """
+    thing = body.thing
+    shown = make_view(body, view, seed)
+    rng = generator(seed, f"sensor before {thing.name}", view)
+    sigma = 0.0 if rng.random() < CLEAN else float(rng.uniform(*SIGMA_AT_1M))
+    if sigma > 0:
+        correlation = float(rng.choice([0.0, 1.5]))
+        noise = StereoNoise(sigma_at_1m=sigma, correlation_px=correlation)
+        shown = shown.with_noise(noise, rng)
+    vertices, faces = simplified(thing)
+    x, y, z = shown.camera_from_world[:3, 2]
+    return Scene(
+        thing=thing,
+        view=view,
+        shown=ShownView(shown),
+        vertices=vertices,
+        faces=faces,
+        up=(float(x), float(y), float(z)),
+        sigma_at_1m=sigma,
+    )
+
+
+def simplified(thing: CatalogueObject) -> tuple[Array, NDArray[np.int32]]:
+    """Return an object's surface as vertices (V, 3) and at most about `TRIANGLES` faces (F, 3)."""
+    surface = thing.surface
+    if len(surface.faces) <= TRIANGLES:
+        return surface.vertices, surface.faces
+    mesh = o3d.geometry.TriangleMesh(
+        o3d.utility.Vector3dVector(np.array(surface.vertices)),
+        o3d.utility.Vector3iVector(np.array(surface.faces)),
+    ).simplify_quadric_decimation(TRIANGLES)
+    return np.asarray(mesh.vertices), np.asarray(mesh.triangles).astype(np.int32)

@@ -1,0 +1,134 @@
+"""Numbers about each grasp that the images of its closing region do not show."""
+
+from __future__ import annotations
+
+import numpy as np
+from numpy.typing import NDArray
+
+from services.grasp_proposal.contacts import Contacts
+from services.grasp_proposal.hand import Hand
+from services.grasp_proposal.scorer import factors, guessed_weight, tool_centre
+from services.grasp_proposal.visibility import SightMap
+from services.grasp_proposal.workspace import Workspace
+from shared.geometry.points import principal_axes
+from shared.geometry.rotation import unit
+
+Array = NDArray[np.float64]
+
+_FACTORS = (
+    "antipodal",
+    "coverage",
+    "opposed",
+    "engaged",
+    "seen",
+    "opening",
+    "palm_clear",
+    "balance",
+    "hold",
+    "reach",
+    "free",
+)
+"""All but whether the grasp is where one is wanted: that is no matter of physics."""
+_VECTORS = ("lever", "torque", "up", "sight", "long_axis")
+NAMES = (
+    *_FACTORS,
+    *(f"{name}_{axis}" for name in _VECTORS for axis in "xyz"),
+    "weight",
+    "lever_length",
+    "width",
+    "width_share",
+    "hidden",
+    "alignment",
+    "twist",
+    "engagement",
+    "palm_height",
+    "tip_height",
+    "height",
+    "longest",
+    "middle",
+    "shortest",
+    "finger_width",
+    "finger_length",
+    "max_opening",
+    "force",
+)
+"""Of the M numbers, in their order."""
+
+_HIGH = 0.1
+"""Heights above the support count up to here, metres."""
+_ODD_X = ("lever_x", "torque_y", "torque_z", "up_x", "sight_x")
+_ODD_Y = ("lever_y", "torque_x", "torque_z", "up_y", "sight_y")
+MIRROR_X = np.array([-1.0 if name in _ODD_X else 1.0 for name in NAMES])
+"""What each number is multiplied by when the scene is mirrored along the hand's x."""
+MIRROR_Y = np.array([-1.0 if name in _ODD_Y else 1.0 for name in NAMES])
+
+
+def measure(
+    workspace: Workspace,
+    hand: Hand,
+    contacts: Contacts,
+    rotation: Array,
+    palm_height: Array,
+    tip_height: Array,
+    sight: SightMap | None,
+) -> Array:
+    """Return the numbers (G, M) of G grasps: lengths in decimetres, forces in newtons.
+
+    Parameters
+    ----------
+    rotation : (G, 3, 3) array
+        Of the hands, upright; vectors are in these frames.
+    palm_height, tip_height : (G,) arrays
+        From `support_clearance`.
+    sight : SightMap or None
+        Without it, all space but the points counts as free.
+    """
+    placed = contacts.placed
+    known = factors(workspace, hand, contacts, palm_height, sight)
+    centre = tool_centre(placed, hand)
+    lever = workspace.centre_of_mass - centre
+    heavy = guessed_weight(workspace)
+    up = np.zeros(3) if workspace.up is None else workspace.up
+    ray = np.zeros_like(centre)
+    if workspace.viewpoint is not None:
+        ray = unit(centre - workspace.viewpoint)
+    _, axes = principal_axes(workspace.coarse)
+    extents = np.sort(np.ptp(workspace.coarse @ axes, axis=0))[::-1]
+    long_axis = np.abs(np.einsum("gij,i->gj", rotation, axes[:, 0]))
+    vectors = [
+        10 * _in_hand(rotation, lever),
+        10 * _in_hand(rotation, np.cross(lever, -heavy * up)),
+        _in_hand(rotation, np.broadcast_to(up, centre.shape)),
+        _in_hand(rotation, ray),
+        long_axis,
+    ]
+    heights = workspace.heights(workspace.coarse)
+    whole = {
+        "weight": heavy,
+        "lever_length": 10 * np.linalg.norm(lever, axis=1),
+        "width": 10 * contacts.width,
+        "width_share": contacts.width / hand.max_opening,
+        "hidden": 10 * contacts.hidden,
+        "alignment": contacts.alignment,
+        "twist": 10 * contacts.twist,
+        "engagement": 10 * contacts.engagement,
+        "palm_height": 10 * np.clip(palm_height, 0, _HIGH),
+        "tip_height": 10 * np.clip(tip_height, 0, _HIGH),
+        "height": 10 * min(float(heights.max()), 1.0),
+        "longest": 10 * float(extents[0]),
+        "middle": 10 * float(extents[1]),
+        "shortest": 10 * float(extents[2]),
+        "finger_width": 10 * hand.finger_width,
+        "finger_length": 10 * hand.finger_length,
+        "max_opening": 10 * hand.max_opening,
+        "force": hand.force,
+    }
+    columns = [known[name] for name in _FACTORS]
+    columns += [vector[:, axis] for vector in vectors for axis in range(3)]
+    columns += [np.broadcast_to(whole[name], len(centre)) for name in NAMES[len(columns) :]]
+    return np.column_stack(columns)
+
+
+def _in_hand(rotation: Array, vectors: Array) -> Array:
+    """Return vectors (G, 3) in the hands' frames (G, 3, 3)."""
+    return np.asarray(np.einsum("gij,gi->gj", rotation, vectors))
