@@ -15,6 +15,7 @@ from numpy.typing import NDArray
 
 from services.execution.convex import ConvexPart, convex_hull
 from services.execution.pieces import Piece, refined
+from services.execution.shells import shells
 from shared.errors import DegenerateCloud
 from shared.superquadric import Superquadric, surface_mesh
 
@@ -23,6 +24,8 @@ Array = NDArray[np.float64]
 TOLERANCE = 0.002
 """Metres that a surface may lie below its part's hull."""
 MAX_PARTS = 24
+MAX_SHELLS = 12
+"""A model of more pieces is taken for a soup and cut as a whole."""
 
 
 def parts_of_primitives(vectors: Sequence[Sequence[float]]) -> list[ConvexPart]:
@@ -47,8 +50,7 @@ def parts_of_mesh(vertices: Array, faces: NDArray[np.int32]) -> list[ConvexPart]
     Parameters
     ----------
     vertices, faces : (V, 3) and (F, 3) arrays
-        Any triangle soup; it need not be closed, but neighbours should agree on
-        what is outside.
+        Any triangle soup; it need not be closed, and its faces may have any sense.
 
     Raises
     ------
@@ -57,8 +59,6 @@ def parts_of_mesh(vertices: Array, faces: NDArray[np.int32]) -> list[ConvexPart]
     """
     centre = vertices[faces].mean(axis=(0, 1))
     triangles = vertices[faces] - centre
-    if np.linalg.det(triangles).sum() < 0:
-        triangles = triangles[:, ::-1]  # turned inside out
     parts = _decompose(np.ascontiguousarray(triangles).tobytes())
     return [ConvexPart(part.vertices + centre, part.faces) for part in parts]
 
@@ -67,17 +67,25 @@ def parts_of_mesh(vertices: Array, faces: NDArray[np.int32]) -> list[ConvexPart]
 def _decompose(triangles: bytes) -> tuple[ConvexPart, ...]:
     """Cut the worst piece until all are convex enough; remembered for the next grasp."""
     surface = np.frombuffer(triangles).reshape(-1, 3, 3)
-    whole = Piece(refined(surface, float(np.ptp(surface, axis=(0, 1)).max()) / 20))
-    if whole.hull is None:
-        raise _flat()
-    pieces = [whole]
-    for _ in range(MAX_PARTS - 1):
+    longest = float(np.ptp(surface, axis=(0, 1)).max()) / 20
+    pieces = [Piece(refined(shell, longest)) for shell in _separate(surface)]
+    while len(pieces) < MAX_PARTS:
         hollow = [piece for piece in pieces if piece.concavity > TOLERANCE]
         if not hollow:
             break
         worst = max(hollow, key=lambda piece: piece.void)
         pieces = [piece for piece in pieces if piece is not worst] + worst.divided()
     return tuple(piece.hull for piece in pieces if piece.hull is not None)
+
+
+def _separate(surface: Array) -> list[Array]:
+    """Return the shells that the surface consists of, or all as one when they are too many."""
+    solid = [shell for shell in shells(surface) if convex_hull(shell.reshape(-1, 3)) is not None]
+    if 1 <= len(solid) <= MAX_SHELLS:
+        return solid
+    if convex_hull(surface.reshape(-1, 3)) is None:
+        raise _flat()
+    return [surface]
 
 
 def _flat() -> DegenerateCloud:

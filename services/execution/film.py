@@ -15,6 +15,7 @@ from services.execution.scene import Scene
 from services.execution.scenery import BACKDROP, Surface, scenery
 from shared.geometry.se3 import inverse, transform_points
 from shared.schemas.execution import ExecuteRequest, Outcome
+from shared.schemas.gripper import ParallelGripper, SuctionGripper
 
 Array = NDArray[np.float64]
 
@@ -31,6 +32,8 @@ WORDS = {
     "close": "closing the fingers",
     "lift": "lifting",
     "hold": "holding",
+    "shake": "shaking",
+    "tilt": "tilting",
 }
 """What people call the phases."""
 COLOURS = 160
@@ -38,7 +41,12 @@ INK, PAPER, GOOD, BAD = "#1F2933", "#FFFFFF", "#1B7F4B", "#B3261E"
 
 
 def film(
-    request: ExecuteRequest, scene: Scene, body: RigidBody, recording: Recording, outcome: Outcome
+    request: ExecuteRequest,
+    scene: Scene,
+    body: RigidBody,
+    recording: Recording,
+    outcome: Outcome,
+    gripper: ParallelGripper | SuctionGripper | None = None,
 ) -> NDArray[np.uint8]:
     """Return the bytes (B,) of an animated GIF; the same ones for the same recording.
 
@@ -52,12 +60,15 @@ def film(
     recording : Recording
     outcome : str
         Is written on the last picture.
+    gripper : ParallelGripper or SuctionGripper, optional
+        What flies by itself, where no arm moves.
     """
-    with scenery(recording.world_from_base, surfaces(request, scene, body)) as stage:
+    shown = surfaces(request, scene, body)
+    with scenery(recording.world_from_base, shown, gripper) as stage:
         pictures = [_picture(stage.draw(snapshot)) for snapshot in recording.snapshots]
     for picture, snapshot in zip(pictures[:-1], recording.snapshots[:-1], strict=True):
         _write(picture, WORDS[snapshot.phase], INK)
-    _write(pictures[-1], outcome.replace("_", " "), GOOD if outcome == "lifted" else BAD)
+    _write(pictures[-1], outcome.replace("_", " "), GOOD if outcome in ("lifted", "held") else BAD)
     return np.frombuffer(bounded_gif(pictures, FRAME_S, MAX_BYTES), dtype=np.uint8)
 
 
@@ -89,7 +100,7 @@ def gif(pictures: Sequence[Image.Image], pace_s: float) -> bytes:
     One palette and no dithering: what does not move does not flicker, and takes no space.
     """
     palette = _palette(pictures)
-    frames = [picture.quantize(palette=palette, dither=Image.Dither.NONE) for picture in pictures]
+    frames = [_indexed(picture, palette) for picture in pictures]
     pace, last = round(1000 * pace_s), round(1000 * LAST_FRAME_S)
     stream = io.BytesIO()
     frames[0].save(
@@ -102,6 +113,20 @@ def gif(pictures: Sequence[Image.Image], pace_s: float) -> bytes:
         optimize=True,
     )
     return stream.getvalue()
+
+
+def _indexed(picture: Image.Image, palette: Image.Image) -> Image.Image:
+    """Return a picture in the colours of `palette`, the backdrop exactly as it is.
+
+    Pillow looks a colour up in cells of several, so that an exact match may lose to a
+    close one of the same cell.
+    """
+    frame = picture.quantize(palette=palette, dither=Image.Dither.NONE)
+    numbers = np.asarray(frame).copy()
+    numbers[(np.asarray(picture) == BACKDROP).all(axis=2)] = COLOURS
+    exact = Image.frombytes("P", frame.size, numbers.tobytes())
+    exact.putpalette(frame.getpalette() or [])
+    return exact
 
 
 def _palette(pictures: Sequence[Image.Image]) -> Image.Image:

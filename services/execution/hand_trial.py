@@ -9,11 +9,13 @@ from numpy.typing import NDArray
 
 from services.execution import outcome
 from services.execution.bullet import TIME_STEP
-from services.execution.flying_hand import FINGERS, LINK_NAMES, PALM, FlyingHand
+from services.execution.flying_cup import FlyingCup
+from services.execution.flying_hand import FlyingHand
 from services.execution.outcome import Verdict
+from services.execution.recording import Recorder
 from services.execution.waypoints import Leg, approach, lift, shake, tilt
 from services.execution.world import SETTLE_S, World
-from shared.schemas.execution import Phase
+from shared.schemas.execution import Outcome, Phase
 
 Array = NDArray[np.float64]
 
@@ -34,37 +36,53 @@ class HandTrial:
     ----------
     world : World
         Settled.
-    hand : FlyingHand
+    hand : FlyingHand or FlyingCup
         At the start of its approach.
     world_from_grasp : (4, 4) array
     strict : bool
         Shake and tilt, too.
+    recorder : Recorder, optional
+        Watches the motion.
+
+    Attributes
+    ----------
+    rise : float
+        How far the object's centre had risen at the end of the lift, metres.
+    lifted : bool
+        It was lifted and held, whatever came after.
+    phases : list of Phase
     """
 
     def __init__(
-        self, world: World, hand: FlyingHand, world_from_grasp: Array, strict: bool
+        self,
+        world: World,
+        hand: FlyingHand | FlyingCup,
+        world_from_grasp: Array,
+        strict: bool,
+        recorder: Recorder | None = None,
     ) -> None:
         self._world = world
         self._hand = hand
         self._world_from_grasp = world_from_grasp
         self._strict = strict
+        self._recorder = recorder
+        self.rise = 0.0
+        self.lifted = False
         self._steps = round(SETTLE_S / TIME_STEP)
         self.phases: list[Phase] = []
         self._end_phase("settle")
 
     def verdict(self) -> Verdict:
         """Move, and judge."""
-        problem = self._approach()
+        problem = self._approach() or self._close()
         if problem is not None:
             return problem
-        self._close()
-        self._world.release()
-        touching = self._fingers_touching()
-        if not touching:
-            return outcome.closed_on_nothing(self._hand.opening)
         legs = lift(self._world_from_grasp)
-        if self._dropped_during(legs) or not self._held():
+        kept = not self._dropped_during(legs) and self._held()
+        self.rise = self._world.rise()
+        if not kept:
             return self._slipped("slipped_in_lift")
+        self.lifted = True
         if not self._strict:
             return self._kept("lifted")
         high = legs[-1].end
@@ -76,30 +94,33 @@ class HandTrial:
         world, hand = self._world, self._hand
         leg = approach(self._world_from_grasp)
         for goal in leg.goals():
-            self._step(goal)
-            if hand.force_on(world.table, PALM) > 0:
+            self._step(leg.phase, goal)
+            if hand.force_on(world.table) > 0:
                 return outcome.palm_on_table()
-            force = hand.force_on(world.object, PALM)
+            force = hand.force_on(world.object)
             if force > PRESS_FORCE:
-                return outcome.pressed("object", LINK_NAMES[PALM], force, leg.phase)
+                return outcome.pressed("object", "the palm", force, leg.phase)
         self._end_phase(leg.phase)
         moved, turned = world.displacement(world.rest)
         return outcome.pushed(moved, turned) if moved > PUSHED_DISTANCE else None
 
-    def _close(self) -> None:
-        self._hand.drive_fingers(0.0, self._hand.gripper.force)
+    def _close(self) -> Verdict | None:
+        self._hand.close()
         for _ in range(round(CLOSE_S / TIME_STEP)):
-            self._step()
+            self._step("close")
         self._end_phase("close")
+        self._world.release()
+        return self._hand.closed(self._world)
 
     def _dropped_during(self, legs: Sequence[Leg]) -> bool:
         """Move along legs; stop and return True as soon as the object is surely lost."""
         missing = 0
         for index, leg in enumerate(legs):
             for step, goal in enumerate(leg.goals()):
-                self._step(None if leg.stands_still else goal)
+                self._step(leg.phase, None if leg.stands_still else goal)
+                self._hand.after_step(self._world)
                 if step % LOOK_EVERY == 0:
-                    missing = 0 if self._hand.touching(self._world.object) else missing + 1
+                    missing = 0 if self._hand.in_touch(self._world) else missing + 1
                     if missing == DROPPED_AFTER:
                         self._end_phase(leg.phase)
                         return True
@@ -107,27 +128,23 @@ class HandTrial:
                 self._end_phase(leg.phase)
         return False
 
-    def _fingers_touching(self) -> list[int]:
-        touching = self._hand.touching(self._world.object)
-        return [finger for finger in FINGERS if finger in touching]
-
     def _held(self) -> bool:
-        world = self._world
-        return len(self._fingers_touching()) == len(FINGERS) and not world.stands_on_something()
+        gripping = len(self._hand.gripping(self._world)) == self._hand.grips
+        return gripping and not self._world.stands_on_something()
 
-    def _slipped(self, where: str) -> Verdict:
-        names = [LINK_NAMES[finger] for finger in self._fingers_touching()]
+    def _slipped(self, where: Outcome) -> Verdict:
+        hand, world = self._hand, self._world
+        lost_by = hand.lost_by if isinstance(hand, FlyingCup) else ""
         return outcome.slipped(
-            where,  # type: ignore[arg-type]
-            names,
-            self._world.stands_on_something(),
-            self._world.rise(),
+            where, hand.gripping(world), world.stands_on_something(), self.rise, lost_by
         )
 
-    def _kept(self, how: str) -> Verdict:
-        return outcome.kept(how, self._world.rise(), self._hand.opening)  # type: ignore[arg-type]
+    def _kept(self, how: Outcome) -> Verdict:
+        return outcome.kept(how, self.rise, self._hand.grip_in_words())
 
-    def _step(self, goal: tuple[list[float], list[float]] | None = None) -> None:
+    def _step(self, phase: str, goal: tuple[list[float], list[float]] | None = None) -> None:
+        if self._recorder is not None:
+            self._recorder.watch(phase)
         if goal is not None:
             self._hand.lead(*goal)
         self._world.step()

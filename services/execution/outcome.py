@@ -65,22 +65,25 @@ def closed_on_nothing(opening: float) -> Verdict:
     return Verdict("missed", f"the fingers closed to {mm(opening)}: on nothing")
 
 
-def slipped(where: Outcome, touching: Sequence[str], standing: bool, rise: float) -> Verdict:
+def slipped(
+    where: Outcome, gripping: Sequence[str], standing: bool, rise: float, lost_by: str = ""
+) -> Verdict:
     """Return the verdict on a free hand that lost the object, or part of its hold."""
-    hold = f"only {touching[0]} still touches it" if len(touching) == 1 else "nothing holds it"
-    if len(touching) == 2:
+    hold = "nothing holds it"
+    if lost_by:
+        hold = f"it is off the cup, by {lost_by}"
+    elif len(gripping) == 1:
+        hold = f"only {gripping[0]} still touches it"
+    elif gripping:
         hold = "it is between the fingers"
     table = " and it touches the table" if standing else ""
-    return Verdict(where, f"in the end {hold}{table}; its centre rose by {mm(rise)}")
+    return Verdict(where, f"in the end {hold}{table}; its centre rose by {mm(rise)} in the lift")
 
 
-def kept(how: Outcome, rise: float, opening: float) -> Verdict:
+def kept(how: Outcome, rise: float, grip: str) -> Verdict:
     """Return the verdict on a free hand that kept the object to the end."""
-    what = "rose" if how == "lifted" else "was lifted, shaken and tilted; it rose"
-    return Verdict(
-        how,
-        f"the object {what} by {mm(rise)} and stayed between the fingers, {mm(opening)} apart",
-    )
+    shaken = "" if how == "lifted" else ", was shaken and tilted"
+    return Verdict(how, f"the object rose by {mm(rise)}{shaken} and {grip}")
 
 
 def inside_table(where: str, depth: float) -> Verdict:
@@ -159,6 +162,26 @@ def judged(end: Held) -> Verdict:
     return Verdict(
         "slipped_in_lift", f"the object was gripped, but {what}; it rose by {mm(end.rise)}"
     )
+
+
+def shaken(end: Held) -> Verdict:
+    """Return the verdict of the arm on an object that was lifted, shaken and tilted."""
+    if missed(end.left, end.right, end.opening) is not None or end.standing:
+        return Verdict(
+            "slipped_in_shake",
+            f"the object was lifted by {mm(end.rise)}, but shaken and tilted it left the "
+            f"fingers, which ended {mm(end.opening)} apart",
+        )
+    return Verdict(
+        "held",
+        f"the object rose by {mm(end.rise)}, was shaken and tilted and stayed between the "
+        f"fingers, {mm(end.opening)} apart",
+    )
+
+
+def unshaken(phase: str) -> Verdict:
+    """Return the verdict on an object that was lifted where the arm cannot shake or tilt it."""
+    return Verdict("unreachable", f"the object was lifted, but the arm cannot {phase} it there")
 
 
 def mm(metres: float) -> str:

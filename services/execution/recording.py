@@ -12,13 +12,18 @@ from numpy.typing import NDArray
 
 from services.execution.arm import Arm
 from services.execution.bullet import TIME_STEP
+from services.execution.flying_cup import FlyingCup
+from services.execution.flying_hand import FlyingHand
 from services.execution.world import World
+from shared.geometry.se3 import pose_matrix
 
 Array = NDArray[np.float64]
 
 STEPS_PER_FRAME = 24
 """Ten frames per simulated second; GIF counts hundredths, 15 or 24 a second do not fit."""
 FRAME_S = STEPS_PER_FRAME * TIME_STEP
+WITHOUT_ROBOT = pose_matrix([-0.55, 0.0, 0.0], np.eye(3))
+"""Where the film's table and camera are put when there is no robot."""
 
 
 @dataclass(frozen=True)
@@ -29,18 +34,21 @@ class Snapshot:
     ----------
     phase : str
         What the robot is doing.
-    joints : (7,) array
-        Of the arm, radians.
+    joints : (7,) array or None
+        Of the arm, radians; None where the hand flies by itself.
     opening : float
         Between the pads, metres.
     world_from_body : (4, 4) array
         Centre of mass and principal axes of the object.
+    world_from_grasp : (4, 4) array or None
+        Of a hand that flies by itself.
     """
 
     phase: str
-    joints: Array
+    joints: Array | None
     opening: float
     world_from_body: Array
+    world_from_grasp: Array | None = None
 
 
 @dataclass(frozen=True)
@@ -50,7 +58,7 @@ class Recording:
     Attributes
     ----------
     world_from_base : (4, 4) array
-        Where the robot stands.
+        Where the robot stands, or would stand.
     snapshots : tuple of Snapshot
     """
 
@@ -64,12 +72,12 @@ class Recorder:
     Parameters
     ----------
     world : World
-    arm : Arm
+    actor : Arm, FlyingHand or FlyingCup
     """
 
-    def __init__(self, world: World, arm: Arm) -> None:
+    def __init__(self, world: World, actor: Arm | FlyingHand | FlyingCup) -> None:
         self._world = world
-        self._arm = arm
+        self._actor = actor
         self._steps = 0
         self._snapshots: list[Snapshot] = []
 
@@ -84,10 +92,19 @@ class Recorder:
         if not self._snapshots:
             return None
         self._take(self._snapshots[-1].phase)
-        return Recording(self._arm.world_from_base, tuple(self._snapshots))
+        actor = self._actor
+        base = actor.world_from_base if isinstance(actor, Arm) else WITHOUT_ROBOT
+        return Recording(base, tuple(self._snapshots))
 
     def _take(self, phase: str) -> None:
         """Keep how things are, unless the simulation has diverged."""
-        arm, place = self._arm, self._world.world_from_body
-        if np.isfinite(place).all() and np.isfinite(arm.joints).all():
-            self._snapshots.append(Snapshot(phase, arm.joints, arm.opening, place))
+        actor, place = self._actor, self._world.world_from_body
+        joints: Array | None = None
+        grasp: Array | None = None
+        if isinstance(actor, Arm):
+            joints = actor.joints
+        else:
+            grasp = actor.world_from_grasp
+        seen = Snapshot(phase, joints, actor.opening, place, grasp)
+        if all(np.isfinite(each).all() for each in (place, joints, grasp) if each is not None):
+            self._snapshots.append(seen)

@@ -1,4 +1,4 @@
-"""The set of a film: robot, table and object in a physics client of their own, drawn off-screen.
+"""The set of a film: robot or hand, table and object in a physics client of their own, drawn off-screen.
 
 Nothing here is simulated. PyBullet's own rasteriser (TinyRenderer) draws on the
 processor, without a window or a graphics card, and always the same pixels.
@@ -19,13 +19,16 @@ from numpy.typing import NDArray
 from services.execution.arm import Arm
 from services.execution.bullet import Bullet, physics
 from services.execution.convex import write_obj
+from services.execution.gripper_boxes import boxes
 from services.execution.recording import Snapshot
 from shared.geometry.rotation import quaternion_from_matrix
 from shared.geometry.se3 import transform_points
+from shared.schemas.gripper import ParallelGripper, SuctionGripper
 
 Array = NDArray[np.float64]
 Image = NDArray[np.uint8]
 Colour = tuple[float, float, float, float]
+AnyGripper = ParallelGripper | SuctionGripper
 
 DRAWN = (640, 480)
 """Width and height in pixels; a film is smaller, which smooths the edges."""
@@ -37,6 +40,7 @@ LIGHT_FROM = (0.6, -0.8, 1.6)
 BACKDROP = (238, 241, 245)
 """Red, green, blue behind everything, 0..255."""
 WOOD, LEG = (0.76, 0.62, 0.47, 1.0), (0.62, 0.49, 0.36, 1.0)
+PALM, FINGER = (0.86, 0.87, 0.89, 1.0), (0.30, 0.33, 0.37, 1.0)
 TABLE_MIDDLE, TABLE_HALF = (0.33, 0.0), (0.60, 0.42, 0.015)
 LEG_HALF = (0.025, 0.025, 0.35)
 NOTHING = -1
@@ -72,14 +76,29 @@ class Scenery:
         Where the robot stands; table and camera go with it.
     surfaces : sequence of Surface
         The object.
+    gripper : ParallelGripper or SuctionGripper, optional
+        Is drawn by itself, in place of the robot.
     """
 
-    def __init__(self, bullet: Bullet, world_from_base: Array, surfaces: Sequence[Surface]) -> None:
+    def __init__(
+        self,
+        bullet: Bullet,
+        world_from_base: Array,
+        surfaces: Sequence[Surface],
+        gripper: AnyGripper | None = None,
+    ) -> None:
         self._bullet = bullet
         self._turn = quaternion_from_matrix(world_from_base[:3, :3])
         self._world_from_base = world_from_base
-        self.robot = Arm(bullet, visible=True)
-        self.robot.stand_at(world_from_base)
+        self._gripper = gripper
+        self.robot = None if gripper is not None else Arm(bullet, visible=True)
+        self._hand: list[int] = []
+        if self.robot is not None:
+            self.robot.stand_at(world_from_base)
+        if gripper is not None:
+            colours = (PALM, FINGER, FINGER)
+            for box, colour in zip(boxes(gripper, 0.0), colours, strict=False):
+                self._hand.append(self._add_box(box.half, (0.0, 0.0, 0.0), colour))
         self._add_table()
         self._object = [self._add_surface(surface) for surface in surfaces]
         eye, target, light = self._placed(np.array([EYE, TARGET, LIGHT_FROM]))
@@ -91,8 +110,15 @@ class Scenery:
 
     def draw(self, snapshot: Snapshot) -> Image:
         """Return the picture (H, W, 3) of a moment."""
-        self.robot.set_joints(snapshot.joints)
-        self.robot.set_opening(snapshot.opening)
+        if self.robot is not None and snapshot.joints is not None:
+            self.robot.set_joints(snapshot.joints)
+            self.robot.set_opening(snapshot.opening)
+        if self._gripper is not None and snapshot.world_from_grasp is not None:
+            grasp = snapshot.world_from_grasp
+            turn = quaternion_from_matrix(grasp[:3, :3])
+            for body, box in zip(self._hand, boxes(self._gripper, snapshot.opening), strict=True):
+                (centre,) = transform_points(grasp, np.array([box.centre]))
+                self._bullet.resetBasePositionAndOrientation(body, centre, turn)
         place = snapshot.world_from_body
         for body in self._object:
             self._bullet.resetBasePositionAndOrientation(
@@ -126,12 +152,13 @@ class Scenery:
 
     def _add_box(
         self, half: Sequence[float], centre: tuple[float, float, float], colour: Colour
-    ) -> None:
+    ) -> int:
         shape = self._bullet.createVisualShape(
             pybullet.GEOM_BOX, halfExtents=half, rgbaColor=colour
         )
         (place,) = self._placed(np.array([centre]))
-        self._bullet.createMultiBody(0, -1, shape, place, self._turn)
+        body: int = self._bullet.createMultiBody(0, -1, shape, place, self._turn)
+        return body
 
     def _add_surface(self, surface: Surface) -> int:
         with tempfile.TemporaryDirectory(prefix="sparge-film-") as folder:
@@ -145,7 +172,9 @@ class Scenery:
 
 
 @contextmanager
-def scenery(world_from_base: Array, surfaces: Sequence[Surface]) -> Iterator[Scenery]:
+def scenery(
+    world_from_base: Array, surfaces: Sequence[Surface], gripper: AnyGripper | None = None
+) -> Iterator[Scenery]:
     """Yield the set; it is gone afterwards, whatever happens."""
     with physics() as bullet:
-        yield Scenery(bullet, world_from_base, surfaces)
+        yield Scenery(bullet, world_from_base, surfaces, gripper)

@@ -10,6 +10,7 @@ from numpy.typing import NDArray
 from scipy.spatial.transform import Rotation, Slerp
 
 from services.execution.bullet import TIME_STEP
+from shared.geometry.se3 import pose_matrix
 
 Array = NDArray[np.float64]
 
@@ -48,6 +49,17 @@ class Leg(NamedTuple):
         ends = Rotation.from_matrix(np.stack([start[:3, :3], end[:3, :3]]))
         quaternions = Slerp([0.0, 1.0], ends)(share).as_quat()
         yield from zip(positions.tolist(), quaternions.tolist(), strict=True)
+
+    def poses(self, count: int) -> list[Array]:
+        """Return `count` poses (4, 4) along the leg, the start left out."""
+        share = np.arange(1, count + 1) / count
+        ends = Rotation.from_matrix(np.stack([self.start[:3, :3], self.end[:3, :3]]))
+        turns = Slerp([0.0, 1.0], ends)(share).as_matrix()
+        way = self.end[:3, 3] - self.start[:3, 3]
+        return [
+            pose_matrix(self.start[:3, 3] + each * way, turn)
+            for each, turn in zip(share, turns, strict=True)
+        ]
 
     @property
     def stands_still(self) -> bool:
