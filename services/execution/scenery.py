@@ -1,4 +1,4 @@
-"""The set of a film: robot or hand, table and object in a physics client of their own, drawn off-screen.
+"""The set of a film: robot or hand, table and object in a client of their own, off-screen.
 
 Nothing here is simulated. PyBullet's own rasteriser (TinyRenderer) draws on the
 processor, without a window or a graphics card, and always the same pixels.

@@ -37,7 +37,7 @@ def shells(triangles: Array) -> list[Array]:
     links = coo_matrix((np.ones(len(first)), (first, second)), shape=(len(faces),) * 2).tocsr()
     count, label = connected_components(links, directed=False)
     if turned.any():
-        flip = _flips(len(faces), first, second, turned, label)
+        flip = _flips(len(faces), first, second, turned, label.astype(np.int64))
         triangles = np.where(flip[:, None, None], triangles[:, ::-1], triangles)
     parts = [triangles[label == each] for each in range(count)]
     return sorted((_outward(part) for part in parts), key=lambda part: -len(part))
@@ -76,11 +76,12 @@ def _flips(
         (np.tile(weights, 2), (np.r_[first, second], np.r_[second, first])), shape=(count,) * 2
     )
     links = both.tocsr()
-    links.data = np.where(np.round(links.data) == 1, 1.0, 2.0)
     flip = np.zeros(count, dtype=np.bool_)
     for each in range(int(label.max()) + 1):
         root = int(np.argmax(label == each))
         order, before = breadth_first_order(links, root, directed=False)
+        if len(order) == 1:
+            continue
         relation = np.asarray(links[before[order[1:]], order[1:]]).ravel()
         for face, differs in zip(order[1:].tolist(), (relation == 2.0).tolist(), strict=True):
             flip[face] = flip[before[face]] ^ differs

@@ -155,6 +155,7 @@ def test_the_robot_of_the_film_holds_what_the_simulated_one_holds() -> None:
         expected = simulated.world_from_grasp()
         stage = Scenery(bullet, BASE, [])
         stage.draw(moments(0.0).snapshots[0])
+        assert stage.robot is not None
         np.testing.assert_allclose(stage.robot.world_from_grasp(), expected, atol=1e-6)
 
 

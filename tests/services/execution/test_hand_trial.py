@@ -127,3 +127,38 @@ def test_the_same_request_gives_the_same_answer() -> None:
     first = by_hand(asked)
     by_hand(request((0.12, 0, 0.12), from_above(), cylinder()))
     assert by_hand(asked).model_dump_json() == first.model_dump_json()
+
+
+def test_a_cup_holds_a_box_in_the_middle_and_loses_it_from_the_edge() -> None:
+    block = box((0.06, 0.04, 0.02), (0, 0, 0.02))
+    held = request((0, 0, 0.04), from_above(), block, width=0.0, gripper="onrobot_vgc10")
+    answer = by_hand(held, strict=True)
+    assert answer.outcome == "held", answer.message
+    assert "cup" in answer.message
+    heavy = box((0.25, 0.05, 0.02), (0, 0, 0.02))
+    at_end = request((0.2, 0, 0.04), from_above(), heavy, width=0.0, gripper="onrobot_vgc10")
+    lost = by_hand(at_end)
+    assert lost.outcome == "slipped_in_lift", lost.message
+    assert "peeling moment" in lost.message
+    beside = request((0.05, 0, 0.04), from_above(), block, width=0.0, gripper="onrobot_vgc10")
+    missed = by_hand(beside)
+    assert missed.outcome == "missed"
+    assert "lip" in missed.message
+
+
+def test_a_heavy_bar_by_its_end_is_lost_when_shaken() -> None:
+    """The bar hangs from the pads in the lift; shaken, its end swings out of them."""
+    bar = box((0.25, 0.02, 0.015), (0, 0, 0.015))
+    asked = request((0.22, 0, 0.022), from_above(), bar, width=0.04, strict=True)
+    answer = by_hand(asked)
+    assert answer.outcome in ("slipped_in_shake", "slipped_in_lift"), answer.message
+    middle = by_hand(request((0, 0, 0.022), from_above(), bar, width=0.04, strict=True))
+    assert middle.outcome == "held", middle.message
+
+
+def test_the_hand_is_filmed_and_the_film_changes_nothing() -> None:
+    asked = request((0.12, 0, 0.12), from_above(), cylinder())
+    answer = by_hand(asked, animate=True)
+    assert answer.animation is not None
+    assert bytes(answer.animation[:6]) == b"GIF89a"
+    assert answer.model_copy(update={"animation": None}) == by_hand(asked)

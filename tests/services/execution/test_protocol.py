@@ -164,3 +164,10 @@ def test_the_same_request_gives_the_same_answer() -> None:
     first = execute(asked)
     execute(other)
     assert execute(asked).model_dump_json() == first.model_dump_json()
+
+
+def test_the_arm_shakes_and_tilts_what_it_lifted() -> None:
+    answer = execute(request((0, 0, 0.09), from_side(), cylinder(), strict=True))
+    assert answer.lifted, answer.message
+    assert answer.outcome in ("held", "unreachable"), answer.message
+    assert answer.success == (answer.outcome == "held")
