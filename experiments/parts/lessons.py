@@ -13,11 +13,8 @@ from experiments.parts.warp import doubled, warped
 
 OTHER_REGIONS = {"bottle": {"pouring": ("body",), "handover": ("shoulder", "neck", "cap")}}
 """Where people disagree which part a border belongs to, the other opinion: whether
-a bottle's shoulder is body or neck. Shown beside the catalogue's, it teaches a cut
-that both can live with."""
-
-OTHER_EVERY = 2
-"""Rounds from one such object to the next: the catalogue's opinion counts more."""
+a bottle's shoulder is body or neck. Shown beside the catalogue's, as often, it teaches a
+cut that both can live with."""
 
 HANDLES = {"pan": "handle", "mug": "handle"}
 """Parts that some objects have two of."""
@@ -38,7 +35,7 @@ def lessons(seed: int, first: int, last: int) -> Iterator[CatalogueObject]:
             if rng.random() > PLAIN:
                 thing = warped(thing, rng)
             yield replace(thing, name=f"{class_name}-{number}")
-            if class_name in OTHER_REGIONS and number % OTHER_EVERY == 0:
+            if class_name in OTHER_REGIONS:
                 yield replace(
                     thing, name=f"{class_name}-{number}-b", regions=OTHER_REGIONS[class_name]
                 )
