@@ -49,9 +49,9 @@ def execute(request: ExecuteRequest, gripper: ParallelGripper | SuctionGripper) 
     DegenerateCloud, InvalidInput
         The object has no volume, or lies below the plane.
     """
+    if isinstance(gripper, ParallelGripper) and request.width > gripper.max_opening:
+        return _refused(too_wide(request.width, gripper.name, gripper.max_opening))
     scene = scene_from_request(request)
-    if isinstance(gripper, ParallelGripper) and scene.width > gripper.max_opening:
-        return _refused(too_wide(scene.width, gripper.name, gripper.max_opening))
     if request.actor == "hand" or gripper.name != ARMED or isinstance(gripper, SuctionGripper):
         return _by_hand(request, scene, gripper)
     return _by_arm(request, scene)
