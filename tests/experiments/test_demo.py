@@ -127,7 +127,7 @@ def test_what_was_not_found_counts() -> None:
     assert named["lift height (mm)"].startswith("300")
     assert [row[-2] for row in one_by_one(trials).texts()] == [
         "lifted",
-        "slipped_in_lift",
+        "slipped in lift",
         "no region: no part matches",
     ]
 

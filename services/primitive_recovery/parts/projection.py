@@ -37,9 +37,9 @@ class Projection:
         """Return places (N, 2) and depths (N,) of points (N, 3) about the mean."""
         if self.eye is None:
             local = centred @ self.frame
-            return local[:, :2], local[:, 2]
+            return local[:, :2], np.ascontiguousarray(local[:, 2])
         local = (centred - self.eye) @ self.frame
-        return local[:, :2] / local[:, 2:], local[:, 2]
+        return local[:, :2] / local[:, 2:], np.ascontiguousarray(local[:, 2])
 
     def lifted(self, places: Array, depth: Array) -> Array:
         """Return the points (N, 3) about the mean at places (N, 2) and depths (N,)."""

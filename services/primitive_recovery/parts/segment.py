@@ -8,6 +8,7 @@ import numpy as np
 from numpy.typing import NDArray
 
 from services.primitive_recovery.parts.borders import PartJoint, joints_of
+from services.primitive_recovery.parts.convexity import is_convex
 from services.primitive_recovery.parts.cutter import Cutter
 from services.primitive_recovery.parts.openings import count_holes
 from services.primitive_recovery.parts.view import part_view
@@ -86,7 +87,8 @@ def segment(
         view = part_view(points, viewpoint, plane, others=others)
     labels = np.zeros(len(points), dtype=np.int16)
     quality: list[float] = []
-    waiting = [(np.arange(len(points)), view)]
+    whole = view.amid and is_convex(view.centred, view.spacing)
+    waiting = [] if whole else [(np.arange(len(points)), view)]
     while waiting and len(quality) + 1 < MOST_PARTS:
         rows, piece = waiting.pop(0)
         if len(rows) < LEAST_POINTS:

@@ -47,6 +47,8 @@ class PartView:
         Cells of the picture where other things hide what is behind them.
     spacing : float
         About how far neighbouring points are apart, metres.
+    amid : bool
+        The viewpoint lies among the points, so that they show all sides.
     is_piece : bool
         Whether this is a part already, cut from a larger object. Of what stands on a
         table most has more than one part; of what was cut from it little has.
@@ -64,6 +66,7 @@ class PartView:
     seen_by: Projection
     hidden: Hidden
     spacing: float
+    amid: bool
     is_piece: bool
 
     @property
@@ -120,6 +123,7 @@ def part_view(
         seen_by=seen_by,
         hidden=hidden_by(None if others is None else others - middle, picture, seen_by, depth),
         spacing=apart * seen_by.metres,
+        amid=amid,
         is_piece=is_piece,
     )
 
