@@ -7,10 +7,9 @@ import hashlib
 import numpy as np
 from numpy.typing import NDArray
 
-from experiments.catalogue import CatalogueObject
 from experiments.framework.views import ShownView
 from shared.client import Sparge
-from shared.geometry.se3 import transform_points
+from shared.geometry.se3 import pose_from_matrix
 from shared.schemas.execution import EXECUTE, ExecuteRequest, ExecuteResponse
 from shared.schemas.grasp import Pose
 from shared.wire import NPZ, encode
@@ -38,29 +37,36 @@ class Replays:
 
 
 def free_hand(
-    view: ShownView, thing: CatalogueObject, grasp: NDArray[np.float64]
+    view: ShownView,
+    vertices: NDArray[np.float64],
+    faces: NDArray[np.int32],
+    grasp: NDArray[np.float64],
+    gripper: str = GRIPPER,
 ) -> ExecuteRequest:
     """Return the request that a hand alone lifts, shakes and tilts the true object.
 
     Parameters
     ----------
     view : ShownView
-        Where the object was seen.
-    thing : CatalogueObject
-        Its mesh is taken to where the view was taken of it, and the table right under it.
+        Where the object was seen; the table is right under it.
+    vertices, faces : (V, 3), (F, 3) arrays
+        The object's mesh in its own frame, the same for all of its views, so that
+        it is prepared once.
     grasp : (9,) array
         A row of the answer, in the camera's frame.
+    gripper : str
     """
     x, y, z, qx, qy, qz, qw, width, _ = map(float, grasp)
     up_x, up_y, up_z = map(float, view.view.camera_from_world[:3, 2])
-    surface = thing.surface
+    position, quaternion = pose_from_matrix(view.view.camera_from_object)
     return ExecuteRequest(
         pose=Pose(position=(x, y, z), quaternion=(qx, qy, qz, qw)),
         width=width,
-        vertices=transform_points(view.view.camera_from_object, surface.vertices),
-        faces=surface.faces,
+        vertices=vertices,
+        faces=faces,
+        object_pose=Pose(position=tuple(position.tolist()), quaternion=tuple(quaternion.tolist())),
         up=(up_x, up_y, up_z),
-        gripper=GRIPPER,
+        gripper=gripper,
         actor="hand",
         strict=True,
     )

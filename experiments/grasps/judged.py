@@ -83,7 +83,8 @@ def judge(
         return Judged(asked, grasp)
     if grasp is None:
         return Judged(asked, None, NO_GRASP, asked.code or "")
-    happened = replays.execute(free_hand(view, thing, grasp))
+    surface = thing.surface
+    happened = replays.execute(free_hand(view, surface.vertices, surface.faces, grasp))
     return Judged(asked, grasp, happened.outcome, happened.message)
 
 

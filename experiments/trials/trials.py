@@ -26,13 +26,12 @@ from numpy.typing import NDArray
 
 from experiments.dataset.randomness import generator
 from experiments.framework.asking import NOT_THE_VIEW
+from experiments.framework.replay import free_hand
 from experiments.trials.candidates import Tried, spread
 from experiments.trials.scenes import Scene
 from shared.client import GraspResult, Sparge
 from shared.errors import DeadlineExceeded, SpargeError
-from shared.geometry.rotation import quaternion_from_matrix
 from shared.schemas.execution import ExecuteRequest, ExecuteResponse
-from shared.schemas.grasp import Pose
 
 Array = NDArray[np.float64]
 Judge = Callable[[ExecuteRequest], ExecuteResponse]
@@ -124,22 +123,7 @@ def try_out(
 
 def execution(scene: Scene, grasp: Array, gripper: str) -> ExecuteRequest:
     """Return the request to try a grasp (9,) on the object as it really is, with a free hand."""
-    lies = scene.shown.view.camera_from_object
-    x, y, z, qx, qy, qz, qw, width, _ = map(float, grasp)
-    return ExecuteRequest(
-        pose=Pose(position=(x, y, z), quaternion=(qx, qy, qz, qw)),
-        width=width,
-        vertices=scene.vertices,
-        faces=scene.faces,
-        object_pose=Pose(
-            position=tuple(lies[:3, 3].tolist()),
-            quaternion=tuple(quaternion_from_matrix(lies[:3, :3]).tolist()),
-        ),
-        up=scene.up,
-        gripper=gripper,
-        actor="hand",
-        strict=True,
-    )
+    return free_hand(scene.shown, scene.vertices, scene.faces, grasp, gripper)
 
 
 def _judged(judge: Judge, request: ExecuteRequest) -> ExecuteResponse | None:

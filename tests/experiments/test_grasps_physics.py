@@ -18,6 +18,7 @@ from experiments.grasps.judged import Judged, judge, shares
 from experiments.grasps.physics_tables import outcomes_table, physics_by_class, physics_table
 from experiments.grasps.sheet import failed, failure_sheet, hand_lines
 from shared.client import Sparge
+from shared.geometry.se3 import matrix_from_pose, transform_points
 from shared.grippers import load_grippers
 from shared.schemas.gripper import ParallelGripper
 from tests.experiments.conftest import MakeContext
@@ -90,10 +91,13 @@ def test_a_grasp_is_replayed_where_the_object_was_seen(make_context: MakeContext
     context = make_context("bottle1")
     (views,) = context.sets
     view, thing = load(views.files[0]), build("bottle1")
-    request = free_hand(view, thing, GRASP)
+    request = free_hand(view, thing.surface.vertices, thing.surface.faces, GRASP)
     assert request.vertices is not None
     assert request.faces is not None
-    surface = np.vstack([request.vertices, request.vertices[request.faces].mean(axis=1)])
+    assert request.object_pose is not None
+    placed = matrix_from_pose(request.object_pose.position, request.object_pose.quaternion)
+    vertices = transform_points(placed, request.vertices)
+    surface = np.vstack([vertices, vertices[request.faces].mean(axis=1)])
     distance = cKDTree(surface).query(view.object_points)[0]
     assert np.median(distance) < 0.01
     assert request.strict
