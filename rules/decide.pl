@@ -19,6 +19,7 @@
 
 :- module(decide, [decision/4]).                % +RuleSet, +Version, +Task, -Decision
 :- use_module(explain).
+:- use_module(reading, [has_rule/2]).
 :- use_module(predicates, [primitive_values/3]).
 :- use_module(quantities, [fits_gripper/1, quantity/3]).
 :- use_module(relations).

@@ -1,4 +1,5 @@
 :- use_module(explain).
+:- use_module(reading).
 :- use_module(predicates).
 :- use_module(library(plunit)).
 
@@ -167,23 +168,5 @@ test(margins_agree, [setup(set_random(seed(8))), forall(between(1, 40, _))]) :-
     forall(( attempt(thesis_version1, affordTask(_, _), T), member(C, T.conditions),
              get_dict(margin, C, Margin), number(Margin) ),
            assertion(( Margin >= 0 -> true == C.holds ; false == C.holds ))).
-
-test(unknown_predicates_are_problems, true(sub_string(Problem, _, _, _, "calls no_such/1"))) :-
-    assertz(odd_rules:(affordTask(ID, broken) :- primitive_values(ID, _, _), no_such(ID))),
-    prepare_rules(odd_rules, odd),
-    once(rule_problem(odd_rules, Problem)),
-    retract(odd_rules:(affordTask(_, broken) :- _)),
-    prepare_rules(odd_rules, odd),
-    !.
-test(misspelt_quantities_are_problems,
-     true(sub_string(Problem, _, _, _, "a quantity that is not known: at_least(strech(_), 2)"))) :-
-    assertz(odd_rules:(affordTask(ID, broken) :- part(ID), at_least(strech(ID), 2))),
-    prepare_rules(odd_rules, odd),
-    once(rule_problem(odd_rules, Problem)),
-    retract(odd_rules:(affordTask(_, broken) :- _)),
-    prepare_rules(odd_rules, odd),
-    !.
-test(the_thesis_has_no_problems, fail) :-
-    rule_problem(thesis_version1, _).
 
 :- end_tests(explain).

@@ -16,7 +16,8 @@
             unteach_rule/2,             % +Knowledge, ?Name
             learned_clause/3            % +Knowledge, ?Name, -Text
           ]).
-:- use_module(explain).
+:- use_module(explain, [steps_hold_for_part/3]).
+:- use_module(reading).
 :- use_module(relations, [knowledge_in_use/1]).
 :- use_module(vocabulary).
 :- use_module(library(apply)).
@@ -153,7 +154,7 @@ test_or_enter(Goal, ID, Names, test(Goal, ID, Text)) :-
 %   Learned rules beside those of a module, and inside learned rules the affordances
 %   that the files define.
 
-explain:further_rule(Module, Head, Steps, Parts, Title, In) :-
+reading:further_rule(Module, Head, Steps, Parts, Title, In) :-
     for(Head, Subject),
     knowledge_in_use(Knowledge),
     run_module(Module, In, _),
@@ -163,9 +164,9 @@ explain:further_part(Module, Head) :-
     knowledge_in_use(Knowledge),
     run_module(Module, In, _),
     holds(Subject, Head, Knowledge, _, In).
-explain:further_rule(Module, Head, Steps, Parts, Title, In) :-
+reading:further_rule(Module, Head, Steps, Parts, Title, In) :-
     runs_in(_, Module, In),
-    explain:prepared(In, Head, Steps, Parts, Title, _).
+    file_rule(In, Head, Steps, Parts, Title, In).
 
 for(affordTask(_, Subject), Subject).
 for(partAffordance(_, Subject), Subject).

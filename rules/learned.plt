@@ -1,4 +1,5 @@
 :- use_module(explain).
+:- use_module(reading).
 :- use_module(learned).
 :- use_module(predicates).
 :- use_module(relations).

@@ -9,7 +9,7 @@
 :- module(rule_file,
           [ rule_file_problems/3        % +File, -Problems, -Rules
           ]).
-:- use_module(explain).
+:- use_module(reading).
 :- use_module(loader).
 :- use_module(library(lists)).
 

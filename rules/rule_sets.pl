@@ -25,7 +25,7 @@
             ruled_task/2,               % +RuleSet, ?Task
             ruled_affordance/2          % +RuleSet, ?Affordance
           ]).
-:- use_module(explain).
+:- use_module(reading).
 :- use_module(loader).
 :- use_module(library(lists)).
 

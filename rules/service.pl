@@ -8,7 +8,8 @@
 
 :- module(service, [answer/2]).         % +Request, -Answer
 :- use_module(decide).
-:- use_module(explain, [called_rule/3, with_memory/1]).
+:- use_module(explain, [with_memory/1]).
+:- use_module(reading, [called_rule/3]).
 :- use_module(json_text).
 :- use_module(learned).
 :- use_module(predicates).

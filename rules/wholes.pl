@@ -5,7 +5,8 @@
 */
 
 :- module(wholes, [wholes/4]).          % +RuleSet, +Version, -Groups, -Traces
-:- use_module(explain, [has_rule/2, proof/3]).
+:- use_module(explain, [proof/3]).
+:- use_module(reading, [has_rule/2]).
 :- use_module(rule_sets, [rule_module/3]).
 :- use_module(library(lists)).
 :- use_module(library(pairs)).
