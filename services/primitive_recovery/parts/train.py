@@ -61,18 +61,10 @@ def show(lesson: Lesson, slices: Rows, sticks: Rows, rng: np.random.Generator) -
     """Add the cuts of an object to the rows."""
     if len(lesson.points) < LEAST_POINTS:
         return
-    view = part_view(
-        lesson.points,
-        np.zeros(3),
-        lesson.plane,
-        others=lesson.others,
-        is_piece=lesson.is_piece,
-    )
+    view = part_view(lesson.points, np.zeros(3), lesson.plane, is_piece=lesson.is_piece)
     total = _counts(lesson, np.ones(len(lesson.points), dtype=bool))
     for axis in view.axes[:2]:
-        cut = profile(
-            view.centred, axis, view.ray, view.height, view.spacing, view.hidden.behind
-        )
+        cut = profile(view.centred, axis, view.ray, view.height, view.spacing)
         useful = usefulness(_slice_quality(lesson, cut, total))
         shown = useful > 0
         useless = np.flatnonzero(~shown)
