@@ -7,7 +7,7 @@ from dataclasses import dataclass
 import numpy as np
 from numpy.typing import NDArray
 from scipy import ndimage
-from scipy.spatial import cKDTree
+from scipy.spatial import ConvexHull, cKDTree
 
 from services.primitive_recovery.parts.grid import bridged, cell_means, nearest_of
 from services.primitive_recovery.parts.projection import Projection
@@ -20,6 +20,8 @@ NEARER = 3.0
 """Cells by which something must be nearer than the object beside it to hide it."""
 BLEED = 1
 """Cells that something hides beyond its points: at a step of depth sensors lose pixels."""
+CONVEX = 0.95
+"""Share of its convex hull that a convex picture fills: cells are coarse, edges noisy."""
 
 _QUARTERS = np.array([[-0.25, -0.25], [-0.25, 0.25], [0.25, -0.25], [0.25, 0.25]])
 
@@ -113,9 +115,50 @@ def bridges(hidden: Hidden, picture: Silhouette, seen_by: Projection, ahead: Arr
     depth = bridged(
         picture.mask, hidden.mask, cell_means(picture.mask, picture.row, picture.column, ahead)
     )
-    cells = np.argwhere(depth > 0)
+    return _dense(np.argwhere(depth > 0), depth[depth > 0], picture, seen_by)
+
+
+def fillings(hidden: Hidden, picture: Silhouette, seen_by: Projection) -> list[Array]:
+    """Return points (F, 3) of a simple object where it is hidden, about its mean, in two ways.
+
+    Hidden cells inside the convex hull of the visible ones, and those inside their box along
+    the hull's principal axes; as far away as the nearest visible ones and as dense as the
+    object's own points. Only where the picture is convex with them.
+    """
+    cells = np.argwhere(hidden.mask)
+    if not len(cells):
+        return []
+    corners = _corners(np.argwhere(picture.mask))
+    planes = ConvexHull(corners).equations
+    in_hull = (cells @ planes[:, :2].T + planes[:, 2] <= 0).all(axis=1)
+    hull = np.vstack([corners, cells[in_hull]])
+    axes = np.linalg.eigh(np.cov(hull.T))[1]
+    placed, edges = cells @ axes, corners @ axes
+    in_box = ((placed >= edges.min(axis=0)) & (placed <= edges.max(axis=0))).all(axis=1)
+    _, depth = seen_by.placed(hidden.behind)
+    return [
+        _dense(cells[inside], depth[inside], picture, seen_by)
+        for inside in (in_hull, in_box)
+        if inside.any() and _is_convex(np.vstack([corners, _corners(cells[inside])]))
+    ]
+
+
+def _corners(cells: NDArray[np.intp]) -> Array:
+    """Return the corners (4 C, 2) of cells (C, 2)."""
+    return np.asarray((cells[:, None, :] + 2 * _QUARTERS).reshape(-1, 2))
+
+
+def _is_convex(corners: Array) -> bool:
+    """Whether cells with these corners (4 C, 2) fill nearly all of their convex hull."""
+    return len(corners) / 4 >= CONVEX * float(ConvexHull(corners).volume)
+
+
+def _dense(
+    cells: NDArray[np.intp], depth: Array, picture: Silhouette, seen_by: Projection
+) -> Array:
+    """Return points in cells (C, 2) at depths (C,), about as many as an object has there."""
     places = picture.middles((cells[:, None, :] + _QUARTERS).reshape(-1, 2))
-    return seen_by.lifted(places, np.repeat(depth[depth > 0], len(_QUARTERS)))
+    return seen_by.lifted(places, np.repeat(depth, len(_QUARTERS)))
 
 
 def _spacing(points: Array) -> float:

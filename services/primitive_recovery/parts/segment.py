@@ -11,7 +11,7 @@ from services.primitive_recovery.parts.borders import PartJoint, joints_of
 from services.primitive_recovery.parts.convexity import is_convex
 from services.primitive_recovery.parts.cutter import Cutter
 from services.primitive_recovery.parts.openings import count_holes
-from services.primitive_recovery.parts.view import part_view
+from services.primitive_recovery.parts.view import PartView, part_view
 from shared.schemas.scene import SupportPlane
 
 Array = NDArray[np.float64]
@@ -87,7 +87,9 @@ def segment(
         view = part_view(points, viewpoint, plane, others=others)
     labels = np.zeros(len(points), dtype=np.int16)
     quality: list[float] = []
-    whole = view.amid and is_convex(view.centred, view.spacing)
+    whole = (view.amid and is_convex(view.centred, view.spacing)) or _may_be_whole(
+        view, plane, others, cutter
+    )
     waiting = [] if whole else [(np.arange(len(points)), view)]
     while waiting and len(quality) + 1 < MOST_PARTS:
         rows, piece = waiting.pop(0)
@@ -114,6 +116,21 @@ def segment(
         quality=tuple(quality),
         front=view.middle + view.hidden.front,
     )
+
+
+def _may_be_whole(
+    view: PartView, plane: SupportPlane | None, others: Array | None, cutter: Cutter
+) -> bool:
+    """Whether nothing would speak for a cut, were the object simple where it is hidden.
+
+    A corner that something hides looks like the inner corner between two parts.
+    """
+    for filling in view.fillings():
+        points = np.vstack([view.points, filling])
+        simple = part_view(points, view.viewpoint, plane, others=others)
+        if cutter.best_cut(simple)[1] < LEAST_QUALITY:
+            return True
+    return False
 
 
 def _largest_first(labels: NDArray[np.int16], seen: int) -> NDArray[np.int16]:

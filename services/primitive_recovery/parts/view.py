@@ -7,7 +7,7 @@ from dataclasses import dataclass
 import numpy as np
 from numpy.typing import NDArray
 
-from services.primitive_recovery.parts.hidden import Hidden, bridges, hidden_by
+from services.primitive_recovery.parts.hidden import Hidden, bridges, fillings, hidden_by
 from services.primitive_recovery.parts.projection import Projection, projection
 from services.primitive_recovery.parts.silhouette import Silhouette, silhouette, spacing
 from shared.geometry.points import tail_signs
@@ -78,6 +78,10 @@ class PartView:
         """Return points (B, 3) where the object goes on behind what hides it, metres."""
         ahead = self.seen_by.placed(self.centred)[1]
         return self.middle + bridges(self.hidden, self.picture, self.seen_by, ahead)
+
+    def fillings(self) -> list[Array]:
+        """Return points (F, 3) where a simple object would go on, in several ways, metres."""
+        return [self.middle + way for way in fillings(self.hidden, self.picture, self.seen_by)]
 
 
 def part_view(

@@ -111,7 +111,7 @@ def test_the_edge_of_what_is_in_front_is_no_border(
 def test_the_superquadric_may_go_on_behind_it(class_name: str) -> None:
     stage = PrimitiveRecovery(PrimitiveRecoverySettings())
     off: dict[str, list[Array]] = {"blind": [], "told": []}
-    for number in range(2001, 2005):
+    for number in range(2001, 2009):
         view = seen(class_name, number)
         visible, front = card(view.points, 0.6, 1.2, (0.4, 1.5))
         alone, blind, told = (
