@@ -6,6 +6,7 @@ A trial's file holds what the grasp proposal is asked with, and what came of its
     regions (Q, N) bool       where grasps were wanted, for each question
     plane (4,)                support plane: unit normal, offset; NaN where none was seen
     up (3,)                   against gravity, as perceived
+    superquadrics (P, 12)     recovered from the object, as in the answer
     grippers (Q,) str         for each question
     question (G,) int         of each grasp
     grasps (G, 9)             x y z qx qy qz qw width score, camera frame
@@ -106,6 +107,7 @@ def try_out(
         "regions": np.array([result.point_region[on_object] for result, _, _ in asked]),
         "plane": np.array(plane),
         "up": np.array(seen.up),
+        "superquadrics": np.array([each.parameters for each in asked[0][0].answer.primitives]),
         "grippers": np.array([gripper for _, gripper, _ in asked]),
         "question": question[done],
         "grasps": grasps[done],

@@ -107,7 +107,7 @@ class Pipeline:
         )
         proposed, grasps = None, np.empty((0, 9))
         if assigned.point_region.any() and request.parameters.max_grasps > 0:
-            proposed, grasps = await self._grasp(run, request, scene, assigned)
+            proposed, grasps = await self._grasp(run, request, scene, recovered, assigned)
         return Outcome(scene, recovered, decision, assigned, proposed, grasps, run.timings_ms)
 
     async def _perceive(self, run: _Run, request: GraspRequest) -> PerceiveResponse:
@@ -209,6 +209,7 @@ class Pipeline:
         run: _Run,
         request: GraspRequest,
         scene: PerceiveResponse,
+        recovered: RecoverResponse,
         assigned: RegionResponse,
     ) -> tuple[ProposeResponse, np.ndarray]:
         proposed = await run.call(
@@ -220,6 +221,7 @@ class Pipeline:
                 up=scene.up,
                 viewpoint=request.parameters.viewpoint,
                 focus=assigned.point_region,
+                superquadrics=np.array([each.parameters for each in recovered.primitives]),
                 gripper=request.parameters.gripper,
                 samples=self._settings.samples,
                 seed=request.parameters.seed,

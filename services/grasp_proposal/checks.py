@@ -7,6 +7,7 @@ from numpy.typing import NDArray
 
 from shared.errors import EmptyCloud, InvalidInput
 from shared.schemas.grasp import ProposeRequest
+from shared.superquadric import Superquadric
 
 Array = NDArray[np.float64]
 Mask = NDArray[np.bool_]
@@ -59,6 +60,35 @@ def checked_points(request: ProposeRequest) -> tuple[Array, Mask]:
     if not request.focus.any():
         raise InvalidInput("focus has no true entry: there is nothing to grasp", field="focus")
     return points, request.focus
+
+
+def checked_superquadrics(request: ProposeRequest, points: Array) -> tuple[Superquadric, ...]:
+    """Return what was recovered from the points (N, 3), if the request says so.
+
+    Raises
+    ------
+    InvalidInput
+        Not finite, a size that is not positive, or farther from the points' box than that
+        is long: in another frame, or another object's.
+    """
+    rows = request.superquadrics
+    if rows is None:
+        return ()
+    if not np.isfinite(rows).all() or not (rows[:, :5] > 0).all():
+        raise InvalidInput(
+            "superquadrics must be finite, exponents and semi-axes positive",
+            field="superquadrics",
+        )
+    low, high = points.min(axis=0), points.max(axis=0)
+    off = np.linalg.norm(rows[:, 5:8] - np.clip(rows[:, 5:8], low, high), axis=1)
+    if len(off) and off.max() > np.linalg.norm(high - low):
+        raise InvalidInput(
+            f"a superquadric is {off.max():.3g} m away from the points; is it in their frame?",
+            field="superquadrics",
+            found=float(off.max()),
+            allowed=float(np.linalg.norm(high - low)),
+        )
+    return tuple(Superquadric.from_vector(row) for row in rows)
 
 
 def checked_viewpoint(request: ProposeRequest) -> Array:

@@ -7,7 +7,8 @@ from numpy.typing import NDArray
 
 from services.grasp_proposal.contacts import Contacts
 from services.grasp_proposal.hand import Hand
-from services.grasp_proposal.scorer import factors, guessed_weight, tool_centre
+from services.grasp_proposal.scorer import factors, tool_centre
+from services.grasp_proposal.unseen import meet_unseen
 from services.grasp_proposal.visibility import SightMap
 from services.grasp_proposal.workspace import Workspace
 from shared.geometry.points import principal_axes
@@ -29,15 +30,19 @@ _FACTORS = (
     "free",
 )
 """All but whether the grasp is where one is wanted: that is no matter of physics."""
-_VECTORS = ("lever", "torque", "up", "sight", "long_axis")
+_VECTORS = ("lever", "torque", "up", "sight", "long_axis", "box", "half")
 NAMES = (
     *_FACTORS,
     *(f"{name}_{axis}" for name in _VECTORS for axis in "xyz"),
     "weight",
     "lever_length",
+    "farthest",
     "width",
     "width_share",
     "hidden",
+    "unseen_width",
+    "unseen_more",
+    "unseen_less",
     "alignment",
     "twist",
     "engagement",
@@ -56,8 +61,8 @@ NAMES = (
 
 _HIGH = 0.1
 """Heights above the support count up to here, metres."""
-_ODD_X = ("lever_x", "torque_y", "torque_z", "up_x", "sight_x")
-_ODD_Y = ("lever_y", "torque_x", "torque_z", "up_y", "sight_y")
+_ODD_X = ("lever_x", "torque_y", "torque_z", "up_x", "sight_x", "box_x")
+_ODD_Y = ("lever_y", "torque_x", "torque_z", "up_y", "sight_y", "box_y")
 MIRROR_X = np.array([-1.0 if name in _ODD_X else 1.0 for name in NAMES])
 """What each number is multiplied by when the scene is mirrored along the hand's x."""
 MIRROR_Y = np.array([-1.0 if name in _ODD_Y else 1.0 for name in NAMES])
@@ -87,7 +92,6 @@ def measure(
     known = factors(workspace, hand, contacts, palm_height, sight)
     centre = tool_centre(placed, hand)
     lever = workspace.centre_of_mass - centre
-    heavy = guessed_weight(workspace)
     up = np.zeros(3) if workspace.up is None else workspace.up
     ray = np.zeros_like(centre)
     if workspace.viewpoint is not None:
@@ -95,20 +99,28 @@ def measure(
     _, axes = principal_axes(workspace.coarse)
     extents = np.sort(np.ptp(workspace.coarse @ axes, axis=0))[::-1]
     long_axis = np.abs(np.einsum("gij,i->gj", rotation, axes[:, 0]))
+    low, high, farthest = _reach_of(workspace.coarse, centre, rotation)
     vectors = [
         10 * _in_hand(rotation, lever),
-        10 * _in_hand(rotation, np.cross(lever, -heavy * up)),
+        10 * _in_hand(rotation, np.cross(lever, -workspace.weight * up)),
         _in_hand(rotation, np.broadcast_to(up, centre.shape)),
         _in_hand(rotation, ray),
         long_axis,
+        5 * (low + high),
+        5 * (high - low),
     ]
     heights = workspace.heights(workspace.coarse)
+    unseen = meet_unseen(workspace, hand, contacts, sight)
     whole = {
-        "weight": heavy,
+        "weight": workspace.weight,
         "lever_length": 10 * np.linalg.norm(lever, axis=1),
+        "farthest": 10 * farthest,
         "width": 10 * contacts.width,
         "width_share": contacts.width / hand.max_opening,
         "hidden": 10 * contacts.hidden,
+        "unseen_width": 10 * unseen.width,
+        "unseen_more": 10 * unseen.more,
+        "unseen_less": 10 * unseen.less,
         "alignment": contacts.alignment,
         "twist": 10 * contacts.twist,
         "engagement": 10 * contacts.engagement,
@@ -127,6 +139,19 @@ def measure(
     columns += [vector[:, axis] for vector in vectors for axis in range(3)]
     columns += [np.broadcast_to(whole[name], len(centre)) for name in NAMES[len(columns) :]]
     return np.column_stack(columns)
+
+
+def _reach_of(points: Array, centre: Array, rotation: Array) -> tuple[Array, Array, Array]:
+    """Return the box of points (M, 3) in the hands' frames and their largest distance.
+
+    Its lowest and highest corners (G, 3): how far the object reaches to either side of a
+    hand, and how long it is when it hangs from there.
+    """
+    along = np.swapaxes(rotation, 1, 2) @ points.T
+    shift = _in_hand(rotation, centre)
+    squared = (points**2).sum(axis=1) - 2 * centre @ points.T + (centre**2).sum(axis=1)[:, None]
+    farthest = np.sqrt(np.maximum(squared.max(axis=1), 0.0))
+    return along.min(axis=2) - shift, along.max(axis=2) - shift, farthest
 
 
 def _in_hand(rotation: Array, vectors: Array) -> Array:

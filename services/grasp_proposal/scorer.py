@@ -10,7 +10,6 @@ from services.grasp_proposal.hand import Hand
 from services.grasp_proposal.placements import Placements
 from services.grasp_proposal.visibility import SightMap
 from services.grasp_proposal.workspace import Workspace
-from shared.geometry.points import principal_axes
 from shared.geometry.rotation import unit
 
 Array = NDArray[np.float64]
@@ -19,7 +18,6 @@ _GOOD_ENGAGEMENT = 0.020
 _LEVER = 0.08
 _HIDDEN_THICKNESS = 0.015
 _FRICTION = 0.6
-_GRAVITY = 9.81
 
 
 def score(
@@ -99,7 +97,7 @@ def _hold(workspace: Workspace, hand: Hand, contacts: Contacts) -> Array:
         return np.ones(len(contacts.width))
     rotation = contacts.placed.rotation
     lever = workspace.centre_of_mass - tool_centre(contacts.placed, hand)
-    torque = np.cross(lever, -workspace.up * guessed_weight(workspace))
+    torque = np.cross(lever, -workspace.up * workspace.weight)
     torque = np.abs(np.einsum("gi,gij->gj", torque, rotation))
     high = np.clip(contacts.engagement, 0.002, hand.finger_length) / 2
     wide = np.clip(contacts.coverage, 0.1, 1.0) * hand.finger_width / 2
@@ -108,13 +106,6 @@ def _hold(workspace: Workspace, hand: Hand, contacts: Contacts) -> Array:
     )
     load = torque / capacity
     return np.asarray(1 / (1 + load[:, 0] ** 2 + 0.25 * load[:, 1] ** 2 + load[:, 2] ** 2))
-
-
-def guessed_weight(workspace: Workspace) -> float:
-    """Guess the weight in newtons: half the bounding box at 400 kg/m3, 50 g to 600 g."""
-    _, axes = principal_axes(workspace.coarse)
-    extents = np.ptp(workspace.coarse @ axes, axis=0)
-    return _GRAVITY * float(np.clip(0.5 * 400 * np.prod(extents), 0.05, 0.6))
 
 
 def _reach(workspace: Workspace, placed: Placements) -> Array:

@@ -17,7 +17,6 @@ from numpy.typing import NDArray
 
 from services.grasp_proposal.cup import Cup
 from services.grasp_proposal.diversity import distinct
-from services.grasp_proposal.scorer import guessed_weight
 from services.grasp_proposal.seal import SECTORS, Seal, seal
 from services.grasp_proposal.workspace import Workspace
 from shared.geometry.rotation import unit
@@ -121,7 +120,7 @@ def _margin(workspace: Workspace, cup: Cup, centres: Array, rotations: Array) ->
     """
     if workspace.up is None:
         return np.full(len(centres), np.inf)
-    weight = guessed_weight(workspace)
+    weight = workspace.weight
     along = rotations[:, :, 2] @ -workspace.up  # pulls off, where the cup comes from above
     off = weight * np.maximum(np.abs(along), 1e-9)
     slide = weight * np.maximum(np.sqrt(np.maximum(1 - along**2, 0.0)), 1e-9)

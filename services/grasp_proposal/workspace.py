@@ -2,18 +2,20 @@
 
 from __future__ import annotations
 
+from collections.abc import Sequence
 from dataclasses import dataclass
 
 import numpy as np
 from numpy.typing import NDArray
 
-from services.grasp_proposal.checks import checked_points, checked_viewpoint
+from services.grasp_proposal.checks import checked_points, checked_superquadrics, checked_viewpoint
 from services.grasp_proposal.surface import estimate_normals
 from services.grasp_proposal.thinning import MAX_POINTS, thin
 from shared.geometry.points import principal_axes
 from shared.geometry.rotation import frame_from_z, unit
 from shared.geometry.se3 import inverse, pose_matrix, transform_points
 from shared.schemas.grasp import ProposeRequest
+from shared.superquadric import Superquadric, surface_mesh, volume
 
 Array = NDArray[np.float64]
 Mask = NDArray[np.bool_]
@@ -23,6 +25,8 @@ _COARSE, _COARSE_COUNT = (0.003, 0.004, 0.005, 0.006), 1200
 _OBSTACLES = (0.004,)
 _HAND_REACH = 0.5
 _STEEP = 0.98
+_MESH = (24, 48)
+_GRAVITY, _DENSITY, _MASS = 9.81, 400.0, (0.05, 0.6)
 _DIGITS = 9
 """Nanometres: the same numbers, to the last bit, wherever the scene was moved to."""
 
@@ -50,6 +54,13 @@ class Workspace:
         A point is `up . p + support_offset` above the support plane.
     viewpoint : (3,) array or None
         None when it lies among the points, so that nothing follows from it.
+    centre_of_mass : (3,) array
+        Of the superquadrics, each as heavy as it is large, or else the mean of the evenly
+        thinned surface.
+    weight : float
+        Newtons, guessed.
+    believed : (B, 3) array
+        Points on the superquadrics' surfaces, seen or not.
     outer_from_work : (4, 4) array
         Motion into the request's frame.
     """
@@ -63,12 +74,10 @@ class Workspace:
     up: Array | None
     support_offset: float | None
     viewpoint: Array | None
+    centre_of_mass: Array
+    weight: float
+    believed: Array
     outer_from_work: Array
-
-    @property
-    def centre_of_mass(self) -> Array:
-        """Mean (3,) of the evenly thinned surface."""
-        return np.asarray(self.coarse.mean(axis=0))
 
     def heights(self, points: Array) -> Array:
         """Return heights (...,) of points (..., 3) above the support plane, inf without one."""
@@ -83,9 +92,10 @@ def build_workspace(request: ProposeRequest) -> Workspace:
     Raises
     ------
     EmptyCloud, InvalidInput
-        See `checked_points` and `checked_viewpoint`.
+        See `checked_points`, `checked_superquadrics` and `checked_viewpoint`.
     """
     points, focus = checked_points(request)
+    bodies = checked_superquadrics(request, points)
     order = np.lexsort((focus, *points.T))
     points, focus = points[order], focus[order]
     up, offset = _up_and_offset(request)
@@ -119,8 +129,42 @@ def build_workspace(request: ProposeRequest) -> Workspace:
         up=up,
         support_offset=offset,
         viewpoint=seen_from,
+        centre_of_mass=_centre_of_mass(bodies, work_from_outer, kept[coarse]),
+        weight=_weight(bodies, kept[coarse]),
+        believed=_believed(bodies, work_from_outer),
         outer_from_work=outer_from_work,
     )
+
+
+def _centre_of_mass(
+    bodies: Sequence[Superquadric], work_from_outer: Array, surface: Array
+) -> Array:
+    """Return the mean of the bodies' centres by volume (3,), which count what was not seen, too.
+
+    The mean of the visible surface lies nearer to the sensor than the centre of mass.
+    """
+    if not bodies:
+        return np.asarray(surface.mean(axis=0))
+    volumes = np.array([volume(body) for body in bodies])
+    centre = volumes @ np.array([body.position for body in bodies]) / volumes.sum()
+    return np.asarray(transform_points(work_from_outer, centre[None])[0].round(_DIGITS))
+
+
+def _weight(bodies: Sequence[Superquadric], surface: Array) -> float:
+    """Guess the weight in newtons: 400 kg/m3, 50 g to 600 g; half the bounding box is full."""
+    if bodies:
+        filled = sum(volume(body) for body in bodies)
+    else:
+        _, axes = principal_axes(surface)
+        filled = 0.5 * float(np.prod(np.ptp(surface @ axes, axis=0)))
+    return _GRAVITY * float(np.clip(_DENSITY * filled, *_MASS))
+
+
+def _believed(bodies: Sequence[Superquadric], work_from_outer: Array) -> Array:
+    if not bodies:
+        return np.empty((0, 3))
+    surface = np.vstack([surface_mesh(body, *_MESH)[0] for body in bodies])
+    return np.asarray(transform_points(work_from_outer, surface).round(_DIGITS))
 
 
 def _near_obstacles(request: ProposeRequest, work_from_outer: Array, points: Array) -> Array:

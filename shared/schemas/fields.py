@@ -27,6 +27,8 @@ Points = Annotated[NDArray[np.float64], ArrayField("float64", ("N", 3))]
 Mask = Annotated[NDArray[np.bool_], ArrayField("bool", ("N",))]
 Indices = Annotated[NDArray[np.int32], ArrayField("int32", ("N",))]
 Labels = Annotated[NDArray[np.int16], ArrayField("int16", ("N",))]
+SuperquadricRows = Annotated[NDArray[np.float64], ArrayField("float64", ("P", 12))]
+"""Rows `[e1, e2, a1, a2, a3, tx, ty, tz, qx, qy, qz, qw]`, metres."""
 GraspRows = Annotated[NDArray[np.float64], ArrayField("float64", ("G", 9))]
 """x y z qx qy qz qw width score, best first."""
 

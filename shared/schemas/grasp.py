@@ -16,6 +16,7 @@ from shared.schemas.fields import (
     Mask,
     Points,
     Quaternion,
+    SuperquadricRows,
     Vector3,
 )
 from shared.schemas.gripper import GripperList
@@ -45,6 +46,8 @@ class ProposeRequest(Message):
     viewpoint: Vector3 = (0.0, 0.0, 0.0)
     focus: Mask | None = None
     """Sample only at these points; the whole object still counts for collisions."""
+    superquadrics: SuperquadricRows | None = None
+    """What was recovered from the object: says where its mass is and where it goes on unseen."""
     gripper: str = "panda"
     samples: Annotated[int, Field(ge=1, le=5000)] = 300
     seed: Annotated[int, Field(ge=0, lt=2**32)] = 0

@@ -7,6 +7,7 @@ from collections.abc import Callable, Iterator
 from dataclasses import dataclass
 from typing import Any
 
+import numpy as np
 import pytest
 
 from services.wiring import create_stage
@@ -109,6 +110,7 @@ def examples(stages: Stages) -> dict[Route[Any, Any], Message]:
         obstacle_points=scene.obstacle_points,
         plane=scene.plane,
         up=scene.up,
+        superquadrics=np.array([each.parameters for each in primitives]),
         samples=60,
     )
     grasps = stages.ask(PROPOSE, propose).grasps

@@ -166,4 +166,5 @@ def _request(arrays: Arrays, question: int) -> ProposeRequest:
         plane=plane,
         up=(up[0], up[1], up[2]),
         focus=focus if focus.any() else None,
+        superquadrics=arrays["superquadrics"],
     )

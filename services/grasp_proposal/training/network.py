@@ -19,8 +19,8 @@ from services.grasp_proposal.training.mirror import mirrored
 Array = NDArray[np.float64]
 
 FILTERS = (16, 32)
-SEEN, KNOWN, JOINT = 32, 32, 48
-"""Features of the images and of the numbers, and of both."""
+SEEN, KNOWN, JOINT = 32, (96, 64), 64
+"""Features of the images, of the numbers in two layers, and of both."""
 DROPPED = 0.3
 BATCH = 64
 RATE, DECAY = 2e-3, 1e-1
@@ -109,10 +109,12 @@ def _untrained(lessons: Lessons) -> Network:
             nn.Linear(FILTERS[1] * side * side, SEEN),
             nn.ReLU(),
         ),
-        numbers=nn.Sequential(nn.Linear(len(NAMES), KNOWN), nn.ReLU()),
+        numbers=nn.Sequential(
+            nn.Linear(len(NAMES), KNOWN[0]), nn.ReLU(), nn.Linear(*KNOWN), nn.ReLU()
+        ),
         joint=nn.Sequential(
             nn.Dropout(DROPPED),
-            nn.Linear(SEEN + KNOWN, JOINT),
+            nn.Linear(SEEN + KNOWN[-1], JOINT),
             nn.ReLU(),
             nn.Linear(JOINT, 2),
         ),

@@ -37,6 +37,7 @@ def trial(index: int) -> dict[str, NDArray[Any]]:
         "regions": np.ones((1, len(scene.points)), dtype=bool),
         "plane": np.array([*scene.up, scene.offset]),
         "up": scene.up,
+        "superquadrics": np.array([[1, 1, *[0.02] * 3, *scene.points.mean(axis=0), 0, 0, 0, 1]]),
         "grippers": np.array(["panda"]),
         "question": np.zeros(len(grasps), dtype=np.int64),
         "grasps": grasps,

@@ -2,13 +2,17 @@ from __future__ import annotations
 
 import numpy as np
 import pytest
+from numpy.typing import NDArray
 
 from services.grasp_proposal.thinning import thin
 from services.grasp_proposal.workspace import build_workspace
 from shared.errors import EmptyCloud, InvalidInput
+from shared.geometry.rotation import quaternion_from_matrix
 from shared.geometry.se3 import pose_matrix, transform_points
 from shared.schemas.scene import SupportPlane
 from tests.services.grasp_proposal.scenes import about_z, lying_cylinder
+
+Array = NDArray[np.float64]
 
 SCENE = lying_cylinder()
 TILT = about_z(0.4)[[1, 2, 0]] @ about_z(-1.1)
@@ -22,6 +26,51 @@ def test_the_workspace_is_tied_to_the_scene() -> None:
     assert np.allclose(there.outer_from_work, motion @ here.outer_from_work, atol=1e-9)
     assert there.viewpoint == pytest.approx(here.viewpoint, abs=1e-9)
     assert there.support_offset == pytest.approx(here.support_offset, abs=1e-9)
+
+
+def ball(radius: float, x: float) -> Array:
+    """Return a ball as a row of superquadric parameters (12,), its centre above the table."""
+    return np.array([1, 1, radius, radius, radius, x, 0.02, 0.03, 0, 0, 0, 1], dtype=np.float64)
+
+
+def test_the_mass_is_where_the_superquadrics_are() -> None:
+    rows = np.array([ball(0.04, 0.0), ball(0.02, 0.09)])
+    motion = pose_matrix([3.0, -2.0, 1.0], TILT)
+    moved = rows.copy()
+    moved[:, 5:8] = transform_points(motion, rows[:, 5:8])
+    moved[:, 8:] = quaternion_from_matrix(TILT)
+    here = build_workspace(SCENE.request(superquadrics=rows))
+    there = build_workspace(SCENE.moved(motion).request(superquadrics=moved))
+    outer = transform_points(here.outer_from_work, here.centre_of_mass[None])[0]
+    assert outer == pytest.approx([0.01, 0.02, 0.03])
+    assert there.centre_of_mass == pytest.approx(here.centre_of_mass, abs=1e-8)
+    assert there.believed == pytest.approx(here.believed, abs=1e-8)
+    assert here.weight == pytest.approx(9.81 * 400 * 4 / 3 * np.pi * (0.04**3 + 0.02**3))
+
+
+def test_without_superquadrics_the_mass_is_where_the_points_are() -> None:
+    work = build_workspace(SCENE.request())
+    assert np.abs(work.centre_of_mass - work.points.mean(axis=0)).max() < 0.005
+    assert 9.81 * 0.05 <= work.weight <= 9.81 * 0.6
+    assert work.believed.shape == (0, 3)
+
+
+@pytest.mark.parametrize(
+    ("change", "message"),
+    [
+        ({6: 1.5}, r"1\.\d+ m away from the points"),
+        ({2: 0.0}, "must be finite, exponents and semi-axes positive"),
+        ({5: np.nan}, "must be finite"),
+    ],
+)
+def test_superquadrics_of_something_else_are_refused(
+    change: dict[int, float], message: str
+) -> None:
+    row = ball(0.04, 0.0)
+    for column, value in change.items():
+        row[column] = value
+    with pytest.raises(InvalidInput, match=message):
+        build_workspace(SCENE.request(superquadrics=row[None]))
 
 
 def test_heights_are_those_above_the_table() -> None:
