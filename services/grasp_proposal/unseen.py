@@ -11,13 +11,23 @@ from services.grasp_proposal.contacts import Contacts
 from services.grasp_proposal.hand import Hand
 from services.grasp_proposal.visibility import SightMap
 from services.grasp_proposal.workspace import Workspace
+from shared.geometry.se3 import transform_points
 from shared.jit import kernel
+from shared.superquadric import inside_outside
 
 Array = NDArray[np.float64]
 
 
+_ACROSS = np.array([-0.4, 0.4])
+_THROUGH = np.array([0.1, 0.5, 0.9])
+_DEEP = np.array([0.0, 0.1, 0.2, 0.35, 0.5, 0.7])
+"""Samples of a finger: shares of its width, its thickness and, from the tip, its length."""
+_LEAST = 0.003
+"""By which a finger is in the way at least whose tip alone is inside, metres."""
+
+
 class Unseen(NamedTuple):
-    """What each of G hands would meet of the unseen surface.
+    """What each of G hands would meet of the object where it was not seen.
 
     Attributes
     ----------
@@ -36,28 +46,49 @@ def meet_unseen(
     workspace: Workspace, hand: Hand, contacts: Contacts, sight: SightMap | None
 ) -> Unseen:
     """Return what hands would meet; nothing without superquadrics or a `sight`."""
-    placed = contacts.placed
+    if sight is None or not workspace.bodies:
+        none = np.zeros(len(contacts.width))
+        return Unseen(none, none, contacts.width)
+    sunk = np.stack([_sunk(workspace, hand, contacts, sight, sign) for sign in (-1.0, 1.0)])
     surface = workspace.believed
-    if sight is not None and len(surface):
-        above = workspace.heights(surface) > 0
-        surface = surface[above & (sight.depth_behind(surface) > 0)]
-    else:
-        surface = surface[:0]
-    limits = np.column_stack([placed.left, placed.right, contacts.opening / 2, placed.tip])
-    met = _meet(
+    above = workspace.heights(surface) > 0
+    surface = surface[above & (sight.depth_behind(surface) > 0)]
+    placed = contacts.placed
+    edges = _edges(
         placed.origin,
         placed.rotation,
-        limits,
+        np.column_stack([placed.left, placed.right, contacts.opening / 2, placed.tip]),
         hand.finger_width / 2,
         hand.finger_thickness,
         np.ascontiguousarray(surface.T),
     )
-    sunk = met[:, :2].clip(0.0, hand.finger_length)
-    return Unseen(sunk.max(axis=1), sunk.min(axis=1), met[:, 3] - met[:, 2])
+    return Unseen(sunk.max(axis=0), sunk.min(axis=0), edges[:, 1] - edges[:, 0])
+
+
+def _sunk(
+    workspace: Workspace, hand: Hand, contacts: Contacts, sight: SightMap, sign: float
+) -> Array:
+    """Return how far from its tip a finger (G,) is inside a superquadric, out of sight."""
+    placed = contacts.placed
+    deep = _DEEP * hand.finger_length
+    grid = np.meshgrid(
+        _ACROSS * hand.finger_width, _THROUGH * hand.finger_thickness, -deep, indexing="ij"
+    )
+    local = np.stack([each.ravel() for each in grid], axis=-1)
+    inner = (placed.left + placed.right) / 2 + sign * contacts.opening / 2
+    samples = np.broadcast_to(local, (len(placed), *local.shape)).copy()
+    samples[:, :, 1] = inner[:, None] + sign * local[:, 1]
+    samples[:, :, 2] += placed.tip[:, None]
+    samples = placed.origin[:, None] + samples @ np.swapaxes(placed.rotation, 1, 2)
+    hidden = (sight.depth_behind(samples) > 0) & (workspace.heights(samples) > 0)
+    met = np.zeros(hidden.shape, dtype=np.bool_)
+    outer = transform_points(workspace.outer_from_work, samples[hidden])
+    met[hidden] = np.any([inside_outside(body, outer) < 1 for body in workspace.bodies], axis=0)
+    return np.asarray(np.where(met, _LEAST - local[:, 2], 0.0).max(axis=1))
 
 
 @kernel
-def _meet(
+def _edges(
     origin: Array,
     rotation: Array,
     limits: Array,
@@ -65,18 +96,17 @@ def _meet(
     thickness: float,
     columns: Array,
 ) -> Array:
-    """Return, for each hand, how far its left and right finger sink in, and both edges (G, 4).
+    """Return the left and right edge (G, 2) of what is between, or below, the fingers.
 
     `limits` (G, 4): left and right edge of the part, half of the opening, depth of the tips;
-    `columns` (3, B): the points' x, y and z.
+    `columns` (3, B): the x, y and z of points that widen it.
     """
-    met = np.zeros((len(origin), 4))
+    edges = limits[:, :2].copy()
     px, py, pz = columns[0], columns[1], columns[2]
     for g in range(len(origin)):
         r, o = rotation[g], origin[g]
         left, right, inner, tip = limits[g]
         middle = (left + right) / 2
-        met[g, 2], met[g, 3] = left, right
         for n in range(len(px)):
             dx, dy, dz = px[n] - o[0], py[n] - o[1], pz[n] - o[2]
             x = r[0, 0] * dx + r[1, 0] * dy + r[2, 0] * dz
@@ -84,11 +114,6 @@ def _meet(
             if abs(x) > half_width or z > tip:
                 continue
             y = r[0, 1] * dx + r[1, 1] * dy + r[2, 1] * dz
-            off = abs(y - middle)
-            if off > inner + thickness:
-                continue
-            met[g, 2], met[g, 3] = min(met[g, 2], y), max(met[g, 3], y)
-            if off > inner:
-                side = 0 if y < middle else 1
-                met[g, side] = max(met[g, side], tip - z)
-    return met
+            if abs(y - middle) <= inner + thickness:
+                edges[g, 0], edges[g, 1] = min(edges[g, 0], y), max(edges[g, 1], y)
+    return edges

@@ -59,8 +59,10 @@ class Workspace:
         thinned surface.
     weight : float
         Newtons, guessed.
+    bodies : tuple of Superquadric
+        What was recovered from the object, in the request's frame.
     believed : (B, 3) array
-        Points on the superquadrics' surfaces, seen or not.
+        Points on their surfaces, seen or not.
     outer_from_work : (4, 4) array
         Motion into the request's frame.
     """
@@ -76,6 +78,7 @@ class Workspace:
     viewpoint: Array | None
     centre_of_mass: Array
     weight: float
+    bodies: tuple[Superquadric, ...]
     believed: Array
     outer_from_work: Array
 
@@ -131,6 +134,7 @@ def build_workspace(request: ProposeRequest) -> Workspace:
         viewpoint=seen_from,
         centre_of_mass=_centre_of_mass(bodies, work_from_outer, kept[coarse]),
         weight=_weight(bodies, kept[coarse]),
+        bodies=bodies,
         believed=_believed(bodies, work_from_outer),
         outer_from_work=outer_from_work,
     )

@@ -20,6 +20,8 @@ TOUCHING_M = 0.006
 """... or at most this many metres."""
 
 _RINGS, _SPOKES = 7, 12
+_LATITUDE = np.linspace(-np.pi / 2, np.pi / 2, _RINGS)[:, None]
+_LONGITUDE = np.linspace(-np.pi, np.pi, _SPOKES, endpoint=False)[None, :]
 
 
 def touching(
@@ -56,15 +58,13 @@ def _meeting(shapes: Sequence[Superquadric]) -> list[tuple[int, int]]:
 
 def _surface(shape: Superquadric) -> Array:
     """Return points (84, 3) of the surface, evenly spread over the sphere of directions."""
-    latitude = np.linspace(-np.pi / 2, np.pi / 2, _RINGS)[:, None]
-    longitude = np.linspace(-np.pi, np.pi, _SPOKES, endpoint=False)[None, :]
     e1, e2 = shape.exponents
-    ring = _power(np.cos(latitude), e1)
+    ring = _power(np.cos(_LATITUDE), e1)
     points = np.stack(
         [
-            ring * _power(np.cos(longitude), e2),
-            ring * _power(np.sin(longitude), e2),
-            np.broadcast_to(_power(np.sin(latitude), e1), (_RINGS, _SPOKES)),
+            ring * _power(np.cos(_LONGITUDE), e2),
+            ring * _power(np.sin(_LONGITUDE), e2),
+            np.broadcast_to(_power(np.sin(_LATITUDE), e1), (_RINGS, _SPOKES)),
         ],
         axis=-1,
     )

@@ -15,8 +15,33 @@ def quaternion_from_matrix(rotation: Matrix) -> Matrix:
 
 
 def matrix_from_quaternion(quaternion: ArrayLike) -> Matrix:
-    """Return rotation matrices (..., 3, 3) of quaternions (..., 4), of any length but zero."""
-    return np.asarray(Rotation.from_quat(np.asarray(quaternion, dtype=np.float64)).as_matrix())
+    """Return rotation matrices (..., 3, 3) of quaternions (..., 4), of any length but zero.
+
+    By the formula, not SciPy's `Rotation`, whose conversions take 70 microseconds a call:
+    the reasoning makes two dozen matrices for a decision of a few milliseconds.
+
+    Raises
+    ------
+    ValueError
+        A quaternion is zero.
+    """
+    q = np.asarray(quaternion, dtype=np.float64)
+    square = (q * q).sum(axis=-1)
+    if not np.all(square > 0):
+        raise ValueError("a quaternion is zero")
+    x, y, z, w = np.moveaxis(q, -1, 0)
+    s = 2 / square
+    matrix = np.empty((*q.shape[:-1], 3, 3))
+    matrix[..., 0, 0] = 1 - s * (y * y + z * z)
+    matrix[..., 0, 1] = s * (x * y - z * w)
+    matrix[..., 0, 2] = s * (x * z + y * w)
+    matrix[..., 1, 0] = s * (x * y + z * w)
+    matrix[..., 1, 1] = 1 - s * (x * x + z * z)
+    matrix[..., 1, 2] = s * (y * z - x * w)
+    matrix[..., 2, 0] = s * (x * z - y * w)
+    matrix[..., 2, 1] = s * (y * z + x * w)
+    matrix[..., 2, 2] = 1 - s * (x * x + y * y)
+    return matrix
 
 
 def unit(vector: ArrayLike) -> Matrix:

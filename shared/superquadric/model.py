@@ -4,6 +4,7 @@ from __future__ import annotations
 
 from collections.abc import Sequence
 from dataclasses import dataclass
+from functools import cached_property
 
 import numpy as np
 from numpy.typing import NDArray
@@ -45,7 +46,7 @@ class Superquadric:
         """Return the 12 parameters (12,) in the order of Eq. 3.3."""
         return np.array([*self.exponents, *self.semi_axes, *self.position, *self.quaternion])
 
-    @property
+    @cached_property
     def rotation(self) -> Array:
         """Rotation matrix (3, 3) from its own frame."""
         return matrix_from_quaternion(self.quaternion)

@@ -3,8 +3,10 @@
 from __future__ import annotations
 
 import numpy as np
+import pytest
 from hypothesis import example, given
 from hypothesis import strategies as st
+from scipy.spatial.transform import Rotation
 
 from shared.geometry.plane import fit_plane, height_above, plane_basis
 from shared.geometry.points import points_from_depth, principal_axes, tail_signs
@@ -47,6 +49,19 @@ def test_quaternions_are_xyzw_with_positive_w(q: tuple[float, ...]) -> None:
     expected = unit_quaternion(q)
     assert found[3] >= 0
     assert abs(found @ expected) > 1 - 1e-9
+
+
+@given(st.lists(quaternion, min_size=1, max_size=4))
+def test_matrices_are_those_of_scipy(several: list[tuple[float, ...]]) -> None:
+    q = np.array(several)
+    expected = Rotation.from_quat(q).as_matrix()
+    np.testing.assert_allclose(matrix_from_quaternion(q), expected, atol=1e-12)
+    np.testing.assert_allclose(matrix_from_quaternion(7.0 * q[0]), expected[0], atol=1e-12)
+
+
+def test_a_quaternion_of_zeros_turns_nothing() -> None:
+    with pytest.raises(ValueError, match="zero"):
+        matrix_from_quaternion([0.0, 0.0, 0.0, 0.0])
 
 
 def unit_quaternion(q: tuple[float, ...]) -> np.ndarray:

@@ -9,7 +9,7 @@ from numpy.typing import NDArray
 from services.grasp_proposal.proposer import GraspProposer
 from services.grasp_proposal.settings import GraspProposalSettings
 from shared.errors import UnknownGripper
-from shared.geometry.rotation import matrix_from_quaternion
+from shared.geometry.rotation import matrix_from_quaternion, quaternion_from_matrix
 from shared.geometry.se3 import inverse, matrix_from_pose, pose_matrix, transform_points
 from shared.grippers import load_grippers
 from shared.schemas.grasp import ProposeRequest, ProposeResponse
@@ -109,7 +109,8 @@ def test_a_flat_bar_is_held_from_above_just_over_the_table() -> None:
 
 
 def test_what_is_too_wide_gives_no_grasp_worth_trying_and_says_why() -> None:
-    answer = propose(box((0.2, 0.2, 0.2), step=0.004))
+    cube = np.array([0.1, 0.1, 0.1, 0.1, 0.1, 0, 0, 0.1, *quaternion_from_matrix(about_z(0.3))])
+    answer = propose(box((0.2, 0.2, 0.2), step=0.004), superquadrics=cube[None])
     assert best_score(answer) < 0.5
     assert answer.rejected["too_wide"] > 0.5 * answer.considered > 0
 
