@@ -14,6 +14,8 @@ from services.grasp_proposal.placements import Placements
 from services.grasp_proposal.workspace import Workspace
 
 _LEAST_ALIGNMENT = 0.5
+_LEAST_WIDTH = 0.0005
+"""Metres: what is seen as thinner is one side of something, and not a part between the pads."""
 
 
 def passing(
@@ -23,7 +25,7 @@ def passing(
     contacts = find_contacts(workspace, hand, placed)
     tips, palm = support_clearance(contacts.placed, hand, contacts.opening, workspace)
     failures = {
-        "no_contact": contacts.empty,
+        "no_contact": contacts.empty | (contacts.width < _LEAST_WIDTH),
         "too_wide": contacts.width > hand.max_width,
         "collision_object": contacts.finger_hit | contacts.palm_hit,
         "collision_support": (tips < TOUCHES * hand.support_clearance)
