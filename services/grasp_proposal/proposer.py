@@ -55,6 +55,7 @@ class GraspProposer:
         )
         post = np.column_stack([-0.02 * np.sin(turn), 0.02 * np.cos(turn), height])
         plane = SupportPlane(normal=(0.0, 0.0, 1.0), offset=0.0, inliers=0, residual_mm=0.0)
+        body = np.array([[0.1, 1.0, 0.02, 0.02, 0.05, 0.0, 0.0, 0.05, 0.0, 0.0, 0.0, 1.0]])
         kinds = {gripper.kind: name for name, gripper in self._grippers.items()}
         for name in kinds.values():
             request = ProposeRequest(
@@ -62,6 +63,7 @@ class GraspProposer:
                 obstacle_points=post + np.array([0.1, 0.3, 0.0]),
                 plane=plane,
                 viewpoint=(-0.5, 0.0, 0.5),
+                superquadrics=body,
                 samples=20,
                 gripper=name,
             )
