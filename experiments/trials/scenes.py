@@ -15,7 +15,6 @@ from experiments.dataset.make import make_view
 from experiments.dataset.randomness import generator
 from experiments.framework import ShownView
 from experiments.parts.warp import warped
-from shared.schemas.fields import Vector3
 
 Array = NDArray[np.float64]
 
@@ -44,8 +43,6 @@ class Scene:
         The object's true mesh, metres, in its own frame.
     faces : (F, 3) int32 array
         Its triangles, at most `TRIANGLES`.
-    up : tuple of float
-        Against gravity, in the camera's frame.
     sigma_at_1m : float
         Of the sensor's noise, metres; 0: a clean view.
     """
@@ -55,7 +52,6 @@ class Scene:
     shown: ShownView
     vertices: Array
     faces: NDArray[np.int32]
-    up: Vector3
     sigma_at_1m: float
 
 
@@ -85,14 +81,12 @@ def draw_scene(body: Body, view: int, seed: int) -> Scene:
         noise = StereoNoise(sigma_at_1m=sigma, correlation_px=correlation)
         shown = shown.with_noise(noise, rng)
     vertices, faces = simplified(thing)
-    x, y, z = shown.camera_from_world[:3, 2]
     return Scene(
         thing=thing,
         view=view,
         shown=ShownView(shown),
         vertices=vertices,
         faces=faces,
-        up=(float(x), float(y), float(z)),
         sigma_at_1m=sigma,
     )
 

@@ -33,6 +33,7 @@ from experiments.trials.scenes import Scene
 from shared.client import GraspResult, Sparge
 from shared.errors import DeadlineExceeded, SpargeError
 from shared.schemas.execution import ExecuteRequest, ExecuteResponse
+from shared.schemas.primitive import superquadric_rows
 
 Array = NDArray[np.float64]
 Judge = Callable[[ExecuteRequest], ExecuteResponse]
@@ -107,7 +108,7 @@ def try_out(
         "regions": np.array([result.point_region[on_object] for result, _, _ in asked]),
         "plane": np.array(plane),
         "up": np.array(seen.up),
-        "superquadrics": np.array([each.parameters for each in asked[0][0].answer.primitives]),
+        "superquadrics": superquadric_rows(asked[0][0].answer.primitives),
         "grippers": np.array([gripper for _, gripper, _ in asked]),
         "question": question[done],
         "grasps": grasps[done],

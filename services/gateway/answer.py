@@ -11,6 +11,7 @@ from services.gateway.settings import GatewaySettings
 from shared.geometry.rotation import matrix_from_quaternion
 from shared.schemas.answer import Grasp, GraspAnswer, LabelledPrimitive, Scene
 from shared.schemas.grasp import Pose
+from shared.schemas.primitive import superquadric_rows
 from shared.schemas.task import Reason
 from shared.wire.npz import write_npz
 
@@ -69,7 +70,7 @@ def to_npz(answer: GraspAnswer, outcome: Outcome) -> bytes:
         {
             "point_primitive": point_primitive,
             "point_region": point_region,
-            "primitives": np.array([p.parameters for p in answer.primitives]).reshape(-1, 12),
+            "primitives": superquadric_rows(answer.primitives),
             "grasps": outcome.grasps,
             "report": np.frombuffer(answer.model_dump_json().encode(), dtype=np.uint8),
         }

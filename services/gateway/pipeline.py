@@ -27,7 +27,12 @@ from shared.schemas.grasp import (
     RegionResponse,
     SelectRequest,
 )
-from shared.schemas.primitive import RECOVER, RecoverRequest, RecoverResponse
+from shared.schemas.primitive import (
+    RECOVER,
+    RecoverRequest,
+    RecoverResponse,
+    superquadric_rows,
+)
 from shared.schemas.route import Nothing, Request, Response, Route
 from shared.schemas.scene import PERCEIVE, PerceiveRequest, PerceiveResponse
 from shared.schemas.task import DECIDE, DecideRequest, DecideResponse
@@ -221,7 +226,7 @@ class Pipeline:
                 up=scene.up,
                 viewpoint=request.parameters.viewpoint,
                 focus=assigned.point_region,
-                superquadrics=np.array([each.parameters for each in recovered.primitives]),
+                superquadrics=superquadric_rows(recovered.primitives),
                 gripper=request.parameters.gripper,
                 samples=self._settings.samples,
                 seed=request.parameters.seed,

@@ -6,6 +6,7 @@ import numpy as np
 from numpy.typing import NDArray
 
 from services.grasp_proposal.contacts import Contacts
+from services.grasp_proposal.fingers import finger_samples
 from services.grasp_proposal.hand import Hand
 from services.grasp_proposal.placements import Placements
 from services.grasp_proposal.visibility import SightMap
@@ -18,6 +19,7 @@ _GOOD_ENGAGEMENT = 0.020
 _LEVER = 0.08
 _HIDDEN_THICKNESS = 0.015
 _FRICTION = 0.6
+_THROUGH, _DEEP = (0.15, 0.85), (0.0, 0.2, 0.4, 0.6)
 
 
 def score(
@@ -132,18 +134,9 @@ def _free_fingers(
     """
     if sight is None:
         return np.ones(len(contacts.width))
-    placed = contacts.placed
-    centre = (placed.left + placed.right) / 2
-    xs = np.array([-0.4, 0.4]) * hand.finger_width
-    ys = np.array([0.15, 0.85]) * hand.finger_thickness
-    zs = -np.array([0.0, 0.2, 0.4, 0.6]) * hand.finger_length
-    grid = np.stack(np.meshgrid(xs, ys, zs, indexing="ij"), axis=-1).reshape(-1, 3)
-    worst = np.zeros(len(centre))
+    worst = np.zeros(len(contacts.width))
     for sign in (-1.0, 1.0):
-        local = np.broadcast_to(grid, (len(centre), *grid.shape)).copy()
-        local[:, :, 1] = centre[:, None] + sign * (contacts.opening[:, None] / 2 + grid[:, 1])
-        local[:, :, 2] += placed.tip[:, None]
-        samples = placed.origin[:, None] + np.einsum("gij,gkj->gki", placed.rotation, local)
+        samples, _ = finger_samples(hand, contacts, sign, _THROUGH, _DEEP)
         behind = sight.depth_behind(samples)
         above = workspace.heights(samples) > 0
         full = np.where((behind > 0) & above, np.exp(-behind / _HIDDEN_THICKNESS), 0.0)

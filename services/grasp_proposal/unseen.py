@@ -8,6 +8,7 @@ import numpy as np
 from numpy.typing import NDArray
 
 from services.grasp_proposal.contacts import Contacts
+from services.grasp_proposal.fingers import finger_samples
 from services.grasp_proposal.hand import Hand
 from services.grasp_proposal.visibility import SightMap
 from services.grasp_proposal.workspace import Workspace
@@ -17,11 +18,8 @@ from shared.superquadric import inside_outside
 
 Array = NDArray[np.float64]
 
-
-_ACROSS = np.array([-0.4, 0.4])
-_THROUGH = np.array([0.1, 0.5, 0.9])
-_DEEP = np.array([0.0, 0.1, 0.2, 0.35, 0.5, 0.7])
-"""Samples of a finger: shares of its width, its thickness and, from the tip, its length."""
+_THROUGH, _DEEP = (0.1, 0.5, 0.9), (0.0, 0.1, 0.2, 0.35, 0.5, 0.7)
+"""Samples of a finger: shares of its thickness and, from the tip, of its length."""
 _LEAST = 0.003
 """By which a finger is in the way at least whose tip alone is inside, metres."""
 
@@ -69,22 +67,12 @@ def _sunk(
     workspace: Workspace, hand: Hand, contacts: Contacts, sight: SightMap, sign: float
 ) -> Array:
     """Return how far from its tip a finger (G,) is inside a superquadric, out of sight."""
-    placed = contacts.placed
-    deep = _DEEP * hand.finger_length
-    grid = np.meshgrid(
-        _ACROSS * hand.finger_width, _THROUGH * hand.finger_thickness, -deep, indexing="ij"
-    )
-    local = np.stack([each.ravel() for each in grid], axis=-1)
-    inner = (placed.left + placed.right) / 2 + sign * contacts.opening / 2
-    samples = np.broadcast_to(local, (len(placed), *local.shape)).copy()
-    samples[:, :, 1] = inner[:, None] + sign * local[:, 1]
-    samples[:, :, 2] += placed.tip[:, None]
-    samples = placed.origin[:, None] + samples @ np.swapaxes(placed.rotation, 1, 2)
+    samples, above_tip = finger_samples(hand, contacts, sign, _THROUGH, _DEEP)
     hidden = (sight.depth_behind(samples) > 0) & (workspace.heights(samples) > 0)
     met = np.zeros(hidden.shape, dtype=np.bool_)
     outer = transform_points(workspace.outer_from_work, samples[hidden])
     met[hidden] = np.any([inside_outside(body, outer) < 1 for body in workspace.bodies], axis=0)
-    return np.asarray(np.where(met, _LEAST - local[:, 2], 0.0).max(axis=1))
+    return np.asarray(np.where(met, _LEAST + above_tip, 0.0).max(axis=1))
 
 
 @kernel

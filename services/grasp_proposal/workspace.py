@@ -61,8 +61,6 @@ class Workspace:
         Newtons, guessed.
     bodies : tuple of Superquadric
         What was recovered from the object, in the request's frame.
-    believed : (B, 3) array
-        Points on their surfaces, seen or not.
     outer_from_work : (4, 4) array
         Motion into the request's frame.
     """
@@ -79,8 +77,14 @@ class Workspace:
     centre_of_mass: Array
     weight: float
     bodies: tuple[Superquadric, ...]
-    believed: Array
     outer_from_work: Array
+
+    @property
+    def believed(self) -> Array:
+        """Points (B, 3) on the surfaces of the bodies, seen or not."""
+        surfaces = [surface_mesh(body, *_MESH)[0] for body in self.bodies]
+        points = np.vstack([np.empty((0, 3)), *surfaces])
+        return np.asarray(transform_points(inverse(self.outer_from_work), points).round(_DIGITS))
 
     def heights(self, points: Array) -> Array:
         """Return heights (...,) of points (..., 3) above the support plane, inf without one."""
@@ -135,7 +139,6 @@ def build_workspace(request: ProposeRequest) -> Workspace:
         centre_of_mass=_centre_of_mass(bodies, work_from_outer, kept[coarse]),
         weight=_weight(bodies, kept[coarse]),
         bodies=bodies,
-        believed=_believed(bodies, work_from_outer),
         outer_from_work=outer_from_work,
     )
 
@@ -162,13 +165,6 @@ def _weight(bodies: Sequence[Superquadric], surface: Array) -> float:
         _, axes = principal_axes(surface)
         filled = 0.5 * float(np.prod(np.ptp(surface @ axes, axis=0)))
     return _GRAVITY * float(np.clip(_DENSITY * filled, *_MASS))
-
-
-def _believed(bodies: Sequence[Superquadric], work_from_outer: Array) -> Array:
-    if not bodies:
-        return np.empty((0, 3))
-    surface = np.vstack([surface_mesh(body, *_MESH)[0] for body in bodies])
-    return np.asarray(transform_points(work_from_outer, surface).round(_DIGITS))
 
 
 def _near_obstacles(request: ProposeRequest, work_from_outer: Array, points: Array) -> Array:

@@ -2,6 +2,7 @@
 
 from __future__ import annotations
 
+from collections.abc import Sequence
 from types import MappingProxyType
 from typing import Annotated, Literal
 
@@ -52,6 +53,11 @@ class Primitive(Message):
     @property
     def superquadric(self) -> Superquadric:
         return Superquadric.from_vector(self.parameters)
+
+
+def superquadric_rows(primitives: Sequence[Primitive]) -> NDArray[np.float64]:
+    """Return the parameters (P, 12) of primitives, a row each."""
+    return np.array([each.parameters for each in primitives], dtype=np.float64).reshape(-1, 12)
 
 
 class EmsParameters(Message):

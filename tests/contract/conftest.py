@@ -7,7 +7,6 @@ from collections.abc import Callable, Iterator
 from dataclasses import dataclass
 from typing import Any
 
-import numpy as np
 import pytest
 
 from services.wiring import create_stage
@@ -28,7 +27,7 @@ from shared.schemas.knowledge import (
     QUERY_KNOWLEDGE,
     SparqlQuery,
 )
-from shared.schemas.primitive import RECOVER, RecoverRequest
+from shared.schemas.primitive import RECOVER, RecoverRequest, superquadric_rows
 from shared.schemas.route import Nothing, Route
 from shared.schemas.rule import LIST_RULES
 from shared.schemas.scene import PERCEIVE, PerceiveRequest
@@ -110,7 +109,7 @@ def examples(stages: Stages) -> dict[Route[Any, Any], Message]:
         obstacle_points=scene.obstacle_points,
         plane=scene.plane,
         up=scene.up,
-        superquadrics=np.array([each.parameters for each in primitives]),
+        superquadrics=superquadric_rows(primitives),
         samples=60,
     )
     grasps = stages.ask(PROPOSE, propose).grasps

@@ -87,9 +87,7 @@ def segment(
         view = part_view(points, viewpoint, plane, others=others)
     labels = np.zeros(len(points), dtype=np.int16)
     quality: list[float] = []
-    whole = (view.amid and is_convex(view.centred, view.spacing)) or _may_be_whole(
-        view, plane, others, cutter
-    )
+    whole = view.amid and is_convex(view.centred, view.spacing)
     waiting = [] if whole else [(np.arange(len(points)), view)]
     while waiting and len(quality) + 1 < MOST_PARTS:
         rows, piece = waiting.pop(0)
@@ -100,6 +98,8 @@ def segment(
         visible = side[rows < seen]
         smaller = min(int(visible.sum()), int((~visible).sum()))
         if best < least or smaller < LEAST_POINTS_OF_PART:
+            continue
+        if not piece.is_piece and _may_be_whole(piece, plane, others, cutter):
             continue
         quality.append(best)
         labels[rows[side]] = len(quality)
