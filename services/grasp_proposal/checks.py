@@ -68,15 +68,16 @@ def checked_superquadrics(request: ProposeRequest, points: Array) -> tuple[Super
     Raises
     ------
     InvalidInput
-        Not finite, a size that is not positive, or farther from the points' box than that
+        Not finite, a size that is not positive, a quaternion of zeros, or farther from the points' box than that
         is long: in another frame, or another object's.
     """
     rows = request.superquadrics
     if rows is None:
         return ()
-    if not np.isfinite(rows).all() or not (rows[:, :5] > 0).all():
+    sound = np.isfinite(rows).all() and (rows[:, :5] > 0).all() and rows[:, 8:].any(axis=1).all()
+    if not sound:
         raise InvalidInput(
-            "superquadrics must be finite, exponents and semi-axes positive",
+            "superquadrics must be finite, exponents and semi-axes positive, quaternions not zero",
             field="superquadrics",
         )
     low, high = points.min(axis=0), points.max(axis=0)

@@ -61,6 +61,7 @@ def test_without_superquadrics_the_mass_is_where_the_points_are() -> None:
         ({6: 1.5}, r"1\.\d+ m away from the points"),
         ({2: 0.0}, "must be finite, exponents and semi-axes positive"),
         ({5: np.nan}, "must be finite"),
+        ({11: 0.0}, "quaternions not zero"),
     ],
 )
 def test_superquadrics_of_something_else_are_refused(
