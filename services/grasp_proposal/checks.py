@@ -68,8 +68,8 @@ def checked_superquadrics(request: ProposeRequest, points: Array) -> tuple[Super
     Raises
     ------
     InvalidInput
-        Not finite, a size that is not positive, a quaternion of zeros, or farther from the points' box than that
-        is long: in another frame, or another object's.
+        Not finite, a size that is not positive, a quaternion of zeros, or farther from the
+        points' box than that is long: in another frame, or another object's.
     """
     rows = request.superquadrics
     if rows is None:
