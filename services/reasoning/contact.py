@@ -2,11 +2,13 @@
 
 from __future__ import annotations
 
+import itertools
 from collections.abc import Sequence
 
 import numpy as np
 from numpy.typing import NDArray
 
+from services.reasoning.bodies import Bodies
 from shared.schemas.primitive import Joint, Primitive
 from shared.superquadric import Superquadric, radial_distance
 
@@ -20,8 +22,11 @@ TOUCHING_M = 0.006
 """... or at most this many metres."""
 
 _RINGS, _SPOKES = 7, 12
-_LATITUDE = np.linspace(-np.pi / 2, np.pi / 2, _RINGS)[:, None]
-_LONGITUDE = np.linspace(-np.pi, np.pi, _SPOKES, endpoint=False)[None, :]
+_LATITUDE = np.repeat(np.linspace(-np.pi / 2, np.pi / 2, _RINGS), _SPOKES)
+_LONGITUDE = np.tile(np.linspace(-np.pi, np.pi, _SPOKES, endpoint=False), _RINGS)
+_DIRECTIONS = np.stack(
+    [np.cos(_LATITUDE), np.cos(_LONGITUDE), np.sin(_LONGITUDE), np.sin(_LATITUDE)], axis=1
+)
 
 
 def touching(
@@ -41,35 +46,40 @@ def touching(
 
 
 def _meeting(shapes: Sequence[Superquadric]) -> list[tuple[int, int]]:
-    surfaces = [_surface(shape) for shape in shapes]
-    middle = [float(np.sort(shape.full_extents)[1]) for shape in shapes]
+    bodies = Bodies.of(shapes)
+    surfaces = _surfaces(bodies)
+    middle = np.sort(bodies.full_extents, axis=1)[:, 1]
+    round_about = np.linalg.norm(bodies.semi_axes, axis=1)
     pairs = []
-    for one in range(len(shapes)):
-        for other in range(one + 1, len(shapes)):
-            limit = max(TOUCHING_M, TOUCHING * min(middle[one], middle[other]))
-            gap = min(
-                radial_distance(shapes[one], surfaces[other]).min(),
-                radial_distance(shapes[other], surfaces[one]).min(),
-            )
-            if gap <= limit:
-                pairs.append((one, other))
+    for one, other in itertools.combinations(range(len(shapes)), 2):
+        limit = max(TOUCHING_M, TOUCHING * min(middle[one], middle[other]))
+        apart = np.linalg.norm(bodies.positions[one] - bodies.positions[other])
+        if apart > round_about[one] + round_about[other] + limit:
+            continue
+        gap = min(
+            radial_distance(shapes[one], surfaces[other]).min(),
+            radial_distance(shapes[other], surfaces[one]).min(),
+        )
+        if gap <= limit:
+            pairs.append((one, other))
     return pairs
 
 
-def _surface(shape: Superquadric) -> Array:
-    """Return points (84, 3) of the surface, evenly spread over the sphere of directions."""
-    e1, e2 = shape.exponents
-    ring = _power(np.cos(_LATITUDE), e1)
+def _surfaces(bodies: Bodies) -> Array:
+    """Return points (P, 84, 3) of each surface, evenly spread over the sphere of directions."""
+    e1, e2 = bodies.exponents.T[:, :, None]
+    ring = _power(_DIRECTIONS[:, 0], e1)
     points = np.stack(
         [
-            ring * _power(np.cos(_LONGITUDE), e2),
-            ring * _power(np.sin(_LONGITUDE), e2),
-            np.broadcast_to(_power(np.sin(_LATITUDE), e1), (_RINGS, _SPOKES)),
+            ring * _power(_DIRECTIONS[:, 1], e2),
+            ring * _power(_DIRECTIONS[:, 2], e2),
+            _power(_DIRECTIONS[:, 3], e1),
         ],
         axis=-1,
     )
-    return shape.to_outer(points.reshape(-1, 3) * np.array(shape.semi_axes))
+    own = points * bodies.semi_axes[:, None]
+    return np.asarray(own @ bodies.rotations.transpose(0, 2, 1) + bodies.positions[:, None])
 
 
-def _power(base: Array, exponent: float) -> Array:
-    return np.sign(base) * np.abs(base) ** exponent
+def _power(base: Array, exponent: Array) -> Array:
+    return np.asarray(np.sign(base) * np.abs(base) ** exponent)

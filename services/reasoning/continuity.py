@@ -8,10 +8,10 @@ from typing import NamedTuple
 import numpy as np
 from numpy.typing import NDArray
 
-from services.reasoning.span import support
-from shared.superquadric import Superquadric
+from services.reasoning.bodies import Bodies
 
 Array = NDArray[np.float64]
+Index = NDArray[np.intp]
 
 
 class Continuity(NamedTuple):
@@ -34,43 +34,34 @@ class Continuity(NamedTuple):
     bend: float
 
 
-def continuity(one: Superquadric, other: Superquadric) -> Continuity:
-    """Return how far two parts continue each other.
+def continuities(bodies: Bodies, pairs: Sequence[tuple[int, int]]) -> tuple[Continuity, ...]:
+    """Return how far the two parts of each pair, two of `bodies`, continue each other.
 
     Both are boxed along the axes of the one and along those of the other; of the two, the
     likeness is the mean and the filling the smaller.
     """
-    (likeness, filling), (again, other_filling) = _seen_by(one, other), _seen_by(other, one)
-    parallel = min(1.0, abs(float(_longest_axis(one) @ _longest_axis(other))))
-    return Continuity(
-        (likeness + again) / 2, min(filling, other_filling), float(np.degrees(np.arccos(parallel)))
+    if not pairs:
+        return ()
+    low, high = bodies.boxes(bodies.rotations)
+    one, other = np.array(pairs).T
+    likeness, filling = _seen_by(low, high, one, other)
+    again, other_filling = _seen_by(low, high, other, one)
+    longest = bodies.rotations[np.arange(len(low)), :, bodies.semi_axes.argmax(axis=1)]
+    parallel = np.minimum(np.abs((longest[one] * longest[other]).sum(axis=1)), 1.0)
+    found = (
+        (likeness + again) / 2,
+        np.minimum(filling, other_filling),
+        np.degrees(np.arccos(parallel)),
     )
+    return tuple(map(Continuity._make, np.stack(found, axis=1).tolist()))
 
 
-def _longest_axis(shape: Superquadric) -> Array:
-    return np.asarray(shape.rotation[:, int(np.argmax(shape.full_extents))])
-
-
-def _seen_by(one: Superquadric, other: Superquadric) -> tuple[float, float]:
-    frame = one.rotation
-    low, high = boxes((one, other), frame)
-    joining = int(np.maximum(low[1] - high[0], low[0] - high[1]).argmax())
+def _seen_by(low: Array, high: Array, one: Index, other: Index) -> tuple[Array, Array]:
+    """Return likeness and filling (M,) of pairs, boxed along the axes of the first of each."""
+    low, high = (np.stack([each[one, one], each[other, one]]) for each in (low, high))
+    joining = np.maximum(low[1] - high[0], low[0] - high[1]).argmax(axis=1)
     size = high - low
-    across = np.delete(size, joining, axis=1)
-    likeness = float((across.min(axis=0) / across.max(axis=0)).min())
+    alike = size.min(axis=0) / size.max(axis=0)
+    alike[np.arange(len(one)), joining] = np.inf
     common = high.max(axis=0) - low.min(axis=0)
-    return likeness, float(size.prod(axis=1).sum() / common.prod())
-
-
-def boxes(shapes: Sequence[Superquadric], frame: Array) -> tuple[Array, Array]:
-    """Return lowest and highest corner (P, 3) of the box around each shape along a frame's axes.
-
-    Parameters
-    ----------
-    shapes : sequence of Superquadric
-    frame : (3, 3) array
-        Its columns are the axes.
-    """
-    middle = np.array([shape.position for shape in shapes]) @ frame
-    half = np.array([support(shape, frame) for shape in shapes])
-    return middle - half, middle + half
+    return alike.min(axis=1), size.prod(axis=2).sum(axis=0) / common.prod(axis=1)

@@ -8,12 +8,11 @@ from dataclasses import dataclass
 import numpy as np
 from numpy.typing import NDArray
 
+from services.reasoning.bodies import Bodies
 from services.reasoning.contact import touching
-from services.reasoning.continuity import Continuity, continuity
-from services.reasoning.span import support
+from services.reasoning.continuity import Continuity, continuities
 from shared.schemas.primitive import Joint, Primitive
 from shared.schemas.scene import SupportPlane
-from shared.superquadric import Superquadric
 
 Array = NDArray[np.float64]
 
@@ -76,35 +75,33 @@ def layout_of(
     plane : SupportPlane or None
         What the object stands on.
     """
-    shapes = [primitive.superquadric for primitive in primitives]
-    positions = np.array([shape.position for shape in shapes])
-    rotations = np.array([shape.rotation for shape in shapes])
-    dimensions = np.array([shape.full_extents for shape in shapes])
+    bodies = Bodies.of([primitive.superquadric for primitive in primitives])
+    positions, rotations, dimensions = bodies.positions, bodies.rotations, bodies.full_extents
     axes = _main_axes(positions, rotations, dimensions)
     cosines = np.einsum("pij,ik->pjk", rotations, axes) ** 2
     thick = np.maximum(dimensions, np.sort(dimensions, axis=1)[:, 1:2] / 2)
     extents = np.exp(np.einsum("pjk,pj->pk", cosines, np.log(thick)))
-    intervals = _spans(shapes, positions, axes[:, 0])
+    intervals = _spans(bodies, axes[:, 0])
     longest = dimensions.argmax(axis=1)
-    parts = np.arange(len(shapes))
+    parts = np.arange(len(positions))
     along = cosines[parts, longest, 0]
     axis = rotations[parts, :, longest]
     apart = positions[:, None] - positions[None, :]
     offsets = 2 * np.abs(np.einsum("ijk,jk->ij", apart, axis)) / dimensions.max(axis=1)
     heights = None
     if plane is not None:
-        heights = _spans(shapes, positions, np.array(plane.normal)) + plane.offset
+        heights = _spans(bodies, np.array(plane.normal)) + plane.offset
     meeting = touching(primitives, joints)
     return Layout(
         axes=axes,
         extents=extents,
         intervals=intervals - intervals[:, 0].min(),
         slants=np.degrees(np.arccos(np.sqrt(np.clip(along, 0, 1)))),
-        reaches=_reaches(shapes, apart),
+        reaches=_reaches(bodies, apart),
         offsets=offsets,
         heights=heights,
         meeting=meeting,
-        continuities=tuple(continuity(shapes[one], shapes[other]) for one, other in meeting),
+        continuities=continuities(bodies, meeting),
     )
 
 
@@ -121,18 +118,16 @@ def _main_axes(positions: Array, rotations: Array, dimensions: Array) -> Array:
     return np.asarray(np.linalg.eigh(spread)[1][:, ::-1])
 
 
-def _spans(shapes: Sequence[Superquadric], positions: Array, direction: Array) -> Array:
-    """Return where each shape begins and ends along a direction (3,): (P, 2) metres."""
-    middle = positions @ direction
-    half = np.array([support(shape, direction[:, None])[0] for shape in shapes])
+def _spans(bodies: Bodies, direction: Array) -> Array:
+    """Return where each begins and ends along a direction (3,): (P, 2) metres."""
+    middle = bodies.positions @ direction
+    half = bodies.reach(direction[None])[:, 0]
     return np.stack([middle - half, middle + half], axis=1)
 
 
-def _reaches(shapes: Sequence[Superquadric], apart: Array) -> Array:
-    """Return how far each shape sticks out of each other one (P, P); see `Layout`."""
+def _reaches(bodies: Bodies, apart: Array) -> Array:
+    """Return how far each sticks out of each other one (P, P); see `Layout`."""
     distance = np.linalg.norm(apart, axis=2)
     direction = apart / np.maximum(distance, 1e-12)[:, :, None]
-    half = np.stack(
-        [support(shape, direction[row].T) for row, shape in enumerate(shapes)]
-    )  # of i towards j, and by symmetry of i away from j
+    half = bodies.reach(direction)  # of i towards j, and by symmetry of i away from j
     return np.asarray(distance + half - half.T)

@@ -8,7 +8,7 @@ from dataclasses import dataclass
 import numpy as np
 from numpy.typing import NDArray
 
-from services.reasoning.continuity import boxes
+from services.reasoning.bodies import Bodies
 from shared.geometry.rotation import quaternion_from_matrix
 from shared.schemas.primitive import Joint, Primitive
 
@@ -94,11 +94,11 @@ def _one_of(pieces: Sequence[Primitive]) -> Primitive:
     """
     shapes = [piece.superquadric for piece in pieces]
     largest = pieces[int(np.argmax([np.prod(shape.full_extents) for shape in shapes]))]
-    sizes = []
-    for shape in shapes:
-        low, high = boxes(shapes, shape.rotation)
-        sizes.append((low.min(axis=0), high.max(axis=0), shape.rotation))
-    low, high, frame = min(sizes, key=lambda each: float((each[1] - each[0]).prod()))
+    bodies = Bodies.of(shapes)
+    lowest, highest = bodies.boxes(bodies.rotations)
+    low, high = lowest.min(axis=0), highest.max(axis=0)
+    best = int((high - low).prod(axis=1).argmin())
+    low, high, frame = low[best], high[best], bodies.rotations[best]
     own = largest.superquadric
     turn = _turn_to(own.rotation[:, 2], frame)
     frame = frame[:, turn]

@@ -5,7 +5,8 @@ from __future__ import annotations
 import numpy as np
 import pytest
 
-from services.reasoning.continuity import continuity
+from services.reasoning.bodies import Bodies
+from services.reasoning.continuity import continuities
 from services.reasoning.reasoner import Reasoner
 from services.reasoning.wholes import as_they_are, joined
 from shared.geometry.rotation import matrix_from_quaternion, quaternion_from_matrix
@@ -163,8 +164,8 @@ def test_continuity_has_no_scale_and_no_order(scale: float) -> None:
         )
 
     flush, thin, there = bar(0, 0.1, 0.03, 0), bar(0.1, 0.1, 0.015, 1), bar(0.1, 0.1, 0.03, 2)
-    same = continuity(flush.superquadric, there.superquadric)
+    bodies = Bodies.of([each.superquadric for each in (flush, thin, there)])
+    same, other, turned = continuities(bodies, [(0, 2), (0, 1), (1, 0)])
     np.testing.assert_allclose(same, (1.0, 1.0, 0.0), rtol=0.02, atol=1e-3)
-    other = continuity(flush.superquadric, thin.superquadric)
     assert other.likeness == pytest.approx(0.5, rel=0.05)
-    assert other == continuity(thin.superquadric, flush.superquadric)
+    assert other == turned
