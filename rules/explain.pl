@@ -145,11 +145,11 @@ without_bound(Goal) :-
     b_setval(explain_distance, distance(0, 0, 0.0)),
     call(Goal).
 
-farther(Condition) :-
+farther(Kind, By) :-
     b_getval(explain_distance, distance(Same0, Failing0, Excess0)),
-    (   about_distinctness(Condition) -> Same is Same0 + 1 ; Same = Same0 ),
+    (   Kind == distinct -> Same is Same0 + 1 ; Same = Same0 ),
     Failing is Failing0 + 1,
-    Excess is Excess0 + Condition.excess,
+    Excess is Excess0 + By,
     Distance = distance(Same, Failing, Excess),
     b_getval(explain_best, Best),
     arg(1, Best, Least),
@@ -176,7 +176,7 @@ bound_part(_-ID) :-
     integer(ID).
 
 %   Each step that is a condition gives tried(Step, Module, Holds, Condition);
-%   Condition is worked out at once only for one that fails.
+%   Condition is worked out at once only for one that fails, and is not a mere bound.
 
 run([], _, _, Tried, Tried).
 run([Step|Steps], Manner, Module, Tried, Tail) :-
@@ -209,11 +209,14 @@ step(test(Goal, ID, Text), softly, Module, [Tried|Tail], Tail) :-
     settled(tried(test(Goal, ID, Text), Module, Holds, _), Tried).
 
 settled(Tried, Tried) :-
-    Tried = tried(_, _, Holds, _),
+    Tried = tried(Step, _, Holds, _),
     (   Holds == true
     ->  true
+    ;   Step = test(Goal, _, _),
+        bound_excess(Goal, Excess)      % all that is needed of it, unless it is the nearest
+    ->  farther(bound, Excess)
     ;   condition(Tried, Condition),
-        farther(Condition)
+        farther(Condition.kind, Condition.excess)
     ).
 
 condition(tried(Step, Module, Holds, Condition), Condition) :-

@@ -13,7 +13,7 @@ test(values, Read == [1, -2.5, 1.0e-9, true, null, [], "a"]) :-
 test(dicts, Read =@= _{one: 1, other: _{list: [[], [0]]}}) :-
     again(_{one: 1, other: _{list: [[], [0]]}}, Read).
 test(escapes) :-
-    forall(member(Text, ["a \"b\"", "\\+ c", "line\nline\ttab", "\u0001\u001f\u007f", "h\u00e9, \u4e2d"]),
+    forall(member(Text, ["a \"b\"", "\\+ c", "line\nline\ttab", "\u0001\u001f\u007f", "\\\\", "\\\"", "\\a", "'", "h\u00e9, \u4e2d"]),
            again([Text], [Text])).
 test(one_line) :-
     json_text(_{text: "a\nb", list: [1, 2]}, Text),

@@ -17,6 +17,7 @@
             learned_clause/3            % +Knowledge, ?Name, -Text
           ]).
 :- use_module(explain, [steps_hold_for_part/3]).
+:- use_module(predicates, [by_size/3]).
 :- use_module(reading).
 :- use_module(relations, [knowledge_in_use/1]).
 :- use_module(vocabulary).
@@ -50,14 +51,26 @@ teach_rule(Knowledge, Rule) :-
 %   A rule that only looks at parts and enters no other is kept as a clause as well: with
 %   many of them known, labels (explain:holds_for_part/2) need not interpret each.
 
-plain_body([find(Goal)|Steps], (predicates:Goal, once(Body))) :-
-    plain_steps(Steps, Body).
+plain_body([find(Goal)|Steps], (Found, once(Body))) :-
+    found_with_size(Goal, Found, Size),
+    plain_steps(Steps, [Size], Body).
 
-plain_steps([], true).
-plain_steps([Step|Steps], (vocabulary:Goal, Body)) :-
-    ( Step = find(Goal) ; Step = test(Goal, _, _) ),
-    !,
-    plain_steps(Steps, Body).
+plain_steps([], _, true).
+plain_steps([find(Goal)|Steps], Sizes, (Found, Body)) :-
+    found_with_size(Goal, Found, Size),
+    plain_steps(Steps, [Size|Sizes], Body).
+plain_steps([test(Goal, _, _)|Steps], Sizes, (Test, Body)) :-
+    (   member(Dim-Size, Sizes),
+        arg(1, Goal, Same),
+        Same == Dim,
+        by_size(Goal, Size, Comparison)
+    ->  Test = Comparison
+    ;   Test = vocabulary:Goal
+    ),
+    plain_steps(Steps, Sizes, Body).
+
+found_with_size(Goal, (predicates:Goal, predicates:part_size(ID, T, W, L)), Dim-size(T, W, L)) :-
+    Goal = primitive_values(ID, _, Dim, _, _).
 
 %!  unteach_rule(+Knowledge, ?Name) is det.
 %

@@ -21,7 +21,10 @@
     spreads; a wrong shape counts 3 times the probability of the class found.
 */
 
-:- module(measurement, [measurement/3]).        % +Goal, +ID, -Measurement
+:- module(measurement,
+          [ measurement/3,              % +Goal, +ID, -Measurement
+            bound_excess/2              % +Goal, -Excess
+          ]).
 :- use_module(predicates).
 :- use_module(quantities).
 :- use_module(library(apply)).
@@ -65,15 +68,9 @@ measure((A ; B), ID, M) :-
     alternatives((A ; B), Found, Classes),
     measure_shape(Found, Classes, ID, M).
 measure(at_least(Quantity, Bound), _, M) :-
-    quantity(Quantity, Value, Unit),
-    number(Bound),
-    Margin is Value - Bound,
-    measure_quantity(at_least, Quantity, Value, Bound, Margin, Unit, M).
+    measure_quantity(at_least(Quantity, Bound), M).
 measure(at_most(Quantity, Bound), _, M) :-
-    quantity(Quantity, Value, Unit),
-    number(Bound),
-    Margin is Bound - Value,
-    measure_quantity(at_most, Quantity, Value, Bound, Margin, Unit, M).
+    measure_quantity(at_most(Quantity, Bound), M).
 measure(meets(A, B), _, M) :-
     integer(A),
     integer(B),
@@ -177,15 +174,41 @@ measure_shape(Found, Classes, ID, M) :-
 
 %   Quantities: outside tells which, in words of the quantity.
 
-measure_quantity(Kind, Quantity, Value, Bound, Margin, Unit, M) :-
-    quantity_spread(Unit, Quantity, Bound, Spread),
-    ( Unit == count -> Slack is Margin + 0.5 ; Slack = Margin ),
-    Spreads is Slack / Spread,
+measure_quantity(Goal, M) :-
+    compared(Goal, Quantity, Bound, Value, Unit, Margin, Spreads),
+    functor(Goal, Kind, _),
     normal(Spreads, Support),
-    ( Margin < 0 -> Excess is max(0.0, -Spreads) ; Excess = 0.0 ),
+    quantity_excess(Margin, Spreads, Excess),
     described(Quantity, Described),
     M = m{kind: Kind, measured: Value, required: Bound, margin: Margin, unit: Unit,
           support: Support, excess: Excess, outside: [], quantity: Described}.
+
+%!  bound_excess(+Goal, -Excess) is semidet.
+%
+%   The excess of a bound on a quantity, as in its measurement.
+
+bound_excess(Goal, Excess) :-
+    compared(Goal, _, _, _, _, Margin, Spreads),
+    quantity_excess(Margin, Spreads, Excess).
+
+compared(at_least(Quantity, Bound), Quantity, Bound, Value, Unit, Margin, Spreads) :-
+    quantity(Quantity, Value, Unit),
+    number(Bound),
+    Margin is Value - Bound,
+    in_spreads(Unit, Quantity, Bound, Margin, Spreads).
+compared(at_most(Quantity, Bound), Quantity, Bound, Value, Unit, Margin, Spreads) :-
+    quantity(Quantity, Value, Unit),
+    number(Bound),
+    Margin is Bound - Value,
+    in_spreads(Unit, Quantity, Bound, Margin, Spreads).
+
+in_spreads(Unit, Quantity, Bound, Margin, Spreads) :-
+    quantity_spread(Unit, Quantity, Bound, Spread),
+    ( Unit == count -> Slack is Margin + 0.5 ; Slack = Margin ),
+    Spreads is Slack / Spread.
+
+quantity_excess(Margin, Spreads, Excess) :-
+    ( Margin < 0 -> Excess is max(0.0, -Spreads) ; Excess = 0.0 ).
 
 quantity_spread(m, Quantity, Bound, Spread) :-
     (   quantity_part(Quantity, ID),

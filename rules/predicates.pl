@@ -20,10 +20,11 @@
             max_ratio/2,                % +Dimensions, +Maximum
             max_shape/1,                % ?ID
             min_shape/1,                % ?ID
+            by_size/3,                  % +Condition, +Size, -Comparison
             sorted_dimensions/2,        % +Dimensions, -Ascending
             part_size/4,                % ?ID, ?Thickness, ?Width, ?Length
             ratio/2,                    % +Dimensions, -Ratio
-            volume/2,                   % ?ID, -Volume
+            volume/2,                   % ?ID, ?Volume
             bound/1,                    % @Term
             state_part/6,               % +ID, +Position, +Dimensions, +Exponents, +Shape, +Probability
             withdraw_parts/0
@@ -50,6 +51,12 @@
 %   The part's dimensions, ascending; they are asked for so often that they are stated.
 
 :- dynamic part_size/4.
+
+%!  volume(?ID, ?Volume) is nondet.
+%
+%   What the part encloses, in cubic metres; stated for the same reason.
+
+:- dynamic volume/2.
 
 %!  primitive_values(?ID, ?Dimensions, ?ShapeClass) is nondet.
 %
@@ -96,6 +103,16 @@ max_ratio(Dimensions, Maximum) :-
     ratio(Dimensions, Ratio),
     Ratio =< Maximum.
 
+%!  by_size(+Condition, +Size, -Comparison) is semidet.
+%
+%   What a condition on a part's dimensions comes to where its size(Thickness, Width,
+%   Length) is known, for rules that are asked about every part of every request.
+
+by_size(min_dimension(_, [A, B, C]), size(T, W, L), (T >= A, W >= B, L >= C)).
+by_size(max_dimension(_, [A, B, C]), size(T, W, L), (T =< A, W =< B, L =< C)).
+by_size(min_ratio(_, Minimum), size(T, _, L), L / T >= Minimum).
+by_size(max_ratio(_, Maximum), size(T, _, L), L / T =< Maximum).
+
 %!  max_shape(?ID) is nondet.
 %
 %   No other part encloses a larger volume. Parts of equal volume all hold.
@@ -125,14 +142,10 @@ ratio(Dimensions, Ratio) :-
     sorted_dimensions(Dimensions, [Smallest, _, Largest]),
     Ratio is Largest / Smallest.
 
-%!  volume(?ID, -Volume) is nondet.
-%
-%   What the part's superquadric encloses, in cubic metres: a cylinder fills
-%   less of its box than a cuboid. Jaklic, Leonardis, Solina (2000), Eq. 2.60,
-%   with a1 a2 a3 = D1 D2 D3 / 8.
+%   What a superquadric encloses, in cubic metres: a cylinder fills less of its box than
+%   a cuboid. Jaklic, Leonardis, Solina (2000), Eq. 2.60, with a1 a2 a3 = D1 D2 D3 / 8.
 
-volume(ID, Volume) :-
-    primitive_values(ID, _, [D1, D2, D3], [E1, E2], _),
+enclosed([D1, D2, D3], [E1, E2], Volume) :-
     Volume is D1 * D2 * D3 / 4 * E1 * E2
               * exp(lgamma(E1/2 + 1) + lgamma(E1) - lgamma(3*E1/2 + 1))
               * exp(2 * lgamma(E2/2) - lgamma(E2)).
@@ -164,6 +177,8 @@ state_part(ID, Position, Dimensions, Exponents, ShapeClass, Probability) :-
     assertz(primitive_values(ID, Position, Dimensions, Exponents, ShapeClass)),
     sorted_dimensions(Dimensions, [Thickness, Width, Length]),
     assertz(part_size(ID, Thickness, Width, Length)),
+    enclosed(Dimensions, Exponents, Volume),
+    assertz(volume(ID, Volume)),
     assertz(shape_probability(ID, Probability)).
 
 %!  withdraw_parts is det.
@@ -173,4 +188,5 @@ state_part(ID, Position, Dimensions, Exponents, ShapeClass, Probability) :-
 withdraw_parts :-
     retractall(primitive_values(_, _, _, _, _)),
     retractall(part_size(_, _, _, _)),
+    retractall(volume(_, _)),
     retractall(shape_probability(_, _)).

@@ -27,6 +27,19 @@ test(min_ratio, fail) :- min_ratio([0.021, 0.05, 0.1], 5).
 test(max_ratio) :- max_ratio([0.02, 0.05, 0.1], 5).
 test(max_ratio, fail) :- max_ratio([0.019, 0.05, 0.1], 5).
 
+%   The short form says what the condition says, on either side of each bound.
+
+test(by_size_is_the_condition,
+     [forall(( member(Dim, [[0.1, 0.02, 0.05], [0.02, 0.02, 0.02], [0.3, 0.2, 0.1]]),
+               ( member(Name, [min_dimension, max_dimension]),
+                 member(Bound, [[0.02, 0.05, 0.1], [0.03, 0.0, 0.0], [0.0, 0.1, 0.2], [0.02, 0.02, 0.4]])
+               ; member(Name, [min_ratio, max_ratio]),
+                 member(Bound, [1, 3, 5, 6]) ) ))]) :-
+    Condition =.. [Name, Dim, Bound],
+    sorted_dimensions(Dim, [T, W, L]),
+    by_size(Condition, size(T, W, L), Comparison),
+    ( call(Condition) -> call(Comparison) ; \+ call(Comparison) ).
+
 test(max_shape_is_the_largest_volume, [setup(parts), all(ID == [0])]) :- max_shape(ID).
 test(min_shape_is_the_smallest_volume, [setup(parts), all(ID == [1])]) :- min_shape(ID).
 test(equal_volumes_all_hold, [setup(twins), all(ID == [0, 1])]) :- max_shape(ID).

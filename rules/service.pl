@@ -24,6 +24,11 @@
 :- use_module(library(lists)).
 :- use_module(library(prolog_code)).
 
+%   A decision needs a megabyte or two and leaves nothing behind: with room for a few, no
+%   garbage is collected in the middle of one.
+
+:- set_prolog_stack(global, min_free(8 000 000)).
+
 %!  answer(+Request, -Answer) is det.
 %
 %   Request is a JSON object with an operation and its arguments, Answer one
@@ -162,22 +167,19 @@ joined_or_decided(Asked, joined{outcome: joined, groups: Groups, traces: Traces}
 joined_or_decided(Asked, Decision) :-
     decision(Asked.rule_set, Asked.version, Asked.task, Decision).
 
-%   The facts that the rules saw.
+%   The facts that the rules saw, as one text with a line for each.
 
 facts(Asked, Facts) :-
-    findall(Fact, fact(Asked, Fact), Facts).
+    with_output_to(string(Facts), forall(fact(Asked, Fact), ( writeq(Fact), nl ))).
 
+fact(_, primitive_values(ID, Position, Dimensions, Exponents, Shape)) :-
+    primitive_values(ID, Position, Dimensions, Exponents, Shape).
 fact(_, Fact) :-
-    primitive_values(ID, Position, Dimensions, Exponents, Shape),
-    format(string(Fact), "~q", [primitive_values(ID, Position, Dimensions, Exponents, Shape)]).
-fact(_, Fact) :-
-    layout_fact(Known),
-    format(string(Fact), "~q", [Known]).
+    layout_fact(Fact).
 fact(Asked, Fact) :-
     Asked.version == v2,
     with_knowledge_all(Asked.knowledge, triple(Asked.task, _, _), Triples),
-    member(Triple, Triples),
-    format(string(Fact), "~q", [Triple]).
+    member(Fact, Triples).
 
 with_knowledge_all(Knowledge, Triple, Triples) :-
     with_knowledge(Knowledge, findall(Triple, Triple, Triples)).

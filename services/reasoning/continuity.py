@@ -44,13 +44,13 @@ def continuities(bodies: Bodies, pairs: Sequence[tuple[int, int]]) -> tuple[Cont
         return ()
     low, high = bodies.boxes(bodies.rotations)
     one, other = np.array(pairs).T
-    likeness, filling = _seen_by(low, high, one, other)
-    again, other_filling = _seen_by(low, high, other, one)
+    there_and_back = np.concatenate([one, other]), np.concatenate([other, one])
+    likeness, filling = (each.reshape(2, -1) for each in _seen_by(low, high, *there_and_back))
     longest = bodies.rotations[np.arange(len(low)), :, bodies.semi_axes.argmax(axis=1)]
     parallel = np.minimum(np.abs((longest[one] * longest[other]).sum(axis=1)), 1.0)
     found = (
-        (likeness + again) / 2,
-        np.minimum(filling, other_filling),
+        likeness.mean(axis=0),
+        filling.min(axis=0),
         np.degrees(np.arccos(parallel)),
     )
     return tuple(map(Continuity._make, np.stack(found, axis=1).tolist()))

@@ -81,16 +81,14 @@ def layout_of(
     cosines = np.einsum("pij,ik->pjk", rotations, axes) ** 2
     thick = np.maximum(dimensions, np.sort(dimensions, axis=1)[:, 1:2] / 2)
     extents = np.exp(np.einsum("pjk,pj->pk", cosines, np.log(thick)))
-    intervals = _spans(bodies, axes[:, 0])
+    upright = [] if plane is None else [plane.normal]
+    intervals, *heights = _spans(bodies, np.array([axes[:, 0], *upright]))
     longest = dimensions.argmax(axis=1)
     parts = np.arange(len(positions))
     along = cosines[parts, longest, 0]
     axis = rotations[parts, :, longest]
     apart = positions[:, None] - positions[None, :]
     offsets = 2 * np.abs(np.einsum("ijk,jk->ij", apart, axis)) / dimensions.max(axis=1)
-    heights = None
-    if plane is not None:
-        heights = _spans(bodies, np.array(plane.normal)) + plane.offset
     meeting = touching(primitives, joints)
     return Layout(
         axes=axes,
@@ -99,7 +97,7 @@ def layout_of(
         slants=np.degrees(np.arccos(np.sqrt(np.clip(along, 0, 1)))),
         reaches=_reaches(bodies, apart),
         offsets=offsets,
-        heights=heights,
+        heights=None if plane is None else heights[0] + plane.offset,
         meeting=meeting,
         continuities=continuities(bodies, meeting),
     )
@@ -118,11 +116,10 @@ def _main_axes(positions: Array, rotations: Array, dimensions: Array) -> Array:
     return np.asarray(np.linalg.eigh(spread)[1][:, ::-1])
 
 
-def _spans(bodies: Bodies, direction: Array) -> Array:
-    """Return where each begins and ends along a direction (3,): (P, 2) metres."""
-    middle = bodies.positions @ direction
-    half = bodies.reach(direction[None])[:, 0]
-    return np.stack([middle - half, middle + half], axis=1)
+def _spans(bodies: Bodies, directions: Array) -> Array:
+    """Return where each begins and ends along directions (K, 3): (K, P, 2) metres."""
+    middle, half = bodies.positions @ directions.T, bodies.reach(directions)
+    return np.stack([middle - half, middle + half], axis=-1).transpose(1, 0, 2)
 
 
 def _reaches(bodies: Bodies, apart: Array) -> Array:

@@ -274,7 +274,7 @@ def _explanation(
         text = explain_miss(request.task, reason.message, miss, wholes, decision["lacking"])
     return Explanation(
         text=" ".join([text, *explain_joining(wholes)]),
-        facts=tuple(decision["facts"]),
+        facts=tuple(decision["facts"].splitlines()),
         rules=tuple(map(trace_of, [*decision["traces"], *joining])),
         nearest_miss=None if miss is None else trace_of(miss),
     )

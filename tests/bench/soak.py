@@ -12,7 +12,7 @@ import numpy as np
 
 from services.reasoning.reasoner import Reasoner
 from shared.schemas.task import DecideRequest, TaskDefinition, TaskName
-from tests.bench.speed import OBJECTS, RULE_SETS, TASKS, VERSIONS
+from tests.bench.speed import OBJECTS, RULE_SETS, TASKS, VERSIONS, question
 
 WINDOWS = 20
 TEACH_EVERY = 500
@@ -60,7 +60,7 @@ def soak(reasoner: Reasoner, requests: int) -> Iterator[Window]:
     """
     questions = itertools.cycle(
         [
-            DecideRequest(task=task, reasoning=version, primitives=parts, rule_set=rule_set)
+            question(task, version, parts, rule_set)
             for task, version, parts, rule_set in itertools.product(
                 TASKS, VERSIONS, OBJECTS, RULE_SETS
             )
