@@ -20,4 +20,5 @@ def create_app(settings: PrimitiveRecoverySettings | None = None) -> FastAPI:
         settings,
         handlers=[bind(RECOVER, stage.recover)],
         warm_up=stage.warm_up,
+        afterwards=stage.warm_up_ems,
     )

@@ -2,15 +2,15 @@
 
 from __future__ import annotations
 
+from typing import TYPE_CHECKING
+
 import numpy as np
 from numpy.typing import NDArray
 
 from services.primitive_recovery.classify import ShapeClassifier
-from services.primitive_recovery.ems.hierarchy import Part, decompose
-from services.primitive_recovery.ems.overlap import kept_after_overlap
 from services.primitive_recovery.parts.cutter import Cutter
 from services.primitive_recovery.parts.recovery import recover_parts
-from services.primitive_recovery.rehearsal import rehearsal
+from services.primitive_recovery.rehearsal import ems_rehearsal, rehearsal
 from services.primitive_recovery.settings import PrimitiveRecoverySettings
 from services.primitive_recovery.validation import checked_cloud, checked_obstacles
 from shared.schemas.primitive import (
@@ -22,6 +22,9 @@ from shared.schemas.primitive import (
     ShapeClass,
 )
 from shared.superquadric import Superquadric
+
+if TYPE_CHECKING:
+    from services.primitive_recovery.ems.hierarchy import Part
 
 
 class PrimitiveRecovery:
@@ -62,6 +65,10 @@ class PrimitiveRecovery:
         return "ems" if asks_for_ems else self._settings.method
 
     def _by_ems(self, request: RecoverRequest, points: NDArray[np.float64]) -> RecoverResponse:
+        # What these import (scikit-learn, scipy.stats) takes longer than all else at the start.
+        from services.primitive_recovery.ems.hierarchy import decompose
+        from services.primitive_recovery.ems.overlap import kept_after_overlap
+
         parameters = request.parameters or PRESETS[request.preset or self._settings.preset]
         rng = np.random.default_rng(request.seed)
         viewpoint = np.array(request.viewpoint)
@@ -81,9 +88,18 @@ class PrimitiveRecovery:
         )
 
     def warm_up(self) -> None:
-        """Compile all kernels, so that the first request is as fast as the next."""
+        """Compile the kernels of `parts`, so that the first request is as fast as the next.
+
+        Those of `ems` as well where that is the method unless a request says otherwise.
+        """
         for request in rehearsal():
             self.recover(request)
+        if self._settings.method == "ems":
+            self.warm_up_ems()
+
+    def warm_up_ems(self) -> None:
+        """Compile the kernels of `ems`, and import what only it needs."""
+        self.recover(ems_rehearsal())
 
 
 def _primitive(index: int, part: Part, shape: ShapeClass, probability: float) -> Primitive:

@@ -42,9 +42,15 @@ def bind(route: Route[In, Out], handler: Callable[[In], Out]) -> Binding[In, Out
 class WarmUp:
     """Runs a stage's warm-up once, in the background, and remembers how it went."""
 
-    def __init__(self, service: str, work: Callable[[], object] | None) -> None:
+    def __init__(
+        self,
+        service: str,
+        work: Callable[[], object] | None,
+        afterwards: Callable[[], object] | None,
+    ) -> None:
         self._service = service
         self._work = work
+        self._afterwards = afterwards
         self._health = Health(status="starting", service=service)
 
     async def run(self) -> None:
@@ -53,6 +59,8 @@ class WarmUp:
             if self._work is not None:
                 await run_in_threadpool(self._work)
             self._health = Health(status="ready", service=self._service)
+            if self._afterwards is not None:
+                await run_in_threadpool(self._afterwards)
         except Exception as error:
             log.exception("%s cannot start", self._service)
             self._health = Health(
@@ -78,6 +86,7 @@ def create_service(
     handlers: Sequence[Binding[Any, Any]],
     *,
     warm_up: Callable[[], object] | None = None,
+    afterwards: Callable[[], object] | None = None,
     close: Callable[[], object] | None = None,
 ) -> FastAPI:
     """Return the application of one stage.
@@ -93,10 +102,13 @@ def create_service(
     warm_up : callable, optional
         Compiles, loads, connects; `/health/ready` turns 200 after it, and no
         route answers before.
+    afterwards : callable, optional
+        Warms up what few requests need, once the service is ready; those that come before
+        it is done take longer.
     close : callable, optional
         Called at shutdown.
     """
-    warm = WarmUp(name, warm_up)
+    warm = WarmUp(name, warm_up, afterwards)
 
     @asynccontextmanager
     async def lifespan(_: FastAPI) -> AsyncIterator[None]:

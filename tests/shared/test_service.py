@@ -40,6 +40,7 @@ def echo(request: SelectRequest) -> SelectResponse:
 def service(
     handler: Callable[[SelectRequest], SelectResponse] = echo,
     warm_up: Callable[[], object] = lambda: None,
+    afterwards: Callable[[], object] | None = None,
     close: Callable[[], object] = lambda: None,
 ) -> FastAPI:
     return create_service(
@@ -48,6 +49,7 @@ def service(
         ServiceSettings(max_body_bytes=10_000),
         [bind(SELECT, handler)],
         warm_up=warm_up,
+        afterwards=afterwards,
         close=close,
     )
 
@@ -129,6 +131,21 @@ def test_a_stage_answers_only_when_warm() -> None:
         while client.get("/health/ready").status_code != 200:
             pass
         assert client.post("/select", json=BODY).status_code == 200
+
+
+def test_what_few_requests_need_is_warmed_up_afterwards() -> None:
+    gate, done = threading.Event(), threading.Event()
+
+    def later() -> None:
+        gate.wait()
+        done.set()
+
+    with in_process(service(afterwards=later)) as client:
+        assert client.request("POST", "/select", json=BODY).status_code == 200
+        assert not done.is_set()
+        gate.set()
+        assert done.wait(10.0)
+        assert client.request("GET", "/health/ready").status_code == 200
 
 
 def test_a_failed_warm_up_is_told() -> None:

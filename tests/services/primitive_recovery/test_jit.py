@@ -16,7 +16,9 @@ import json
 from services.primitive_recovery.recovery import PrimitiveRecovery
 from services.primitive_recovery.settings import PrimitiveRecoverySettings
 from shared.jit import types_compiled
-PrimitiveRecovery(PrimitiveRecoverySettings()).warm_up()
+recovery = PrimitiveRecovery(PrimitiveRecoverySettings())
+recovery.warm_up()
+recovery.warm_up_ems()
 print(json.dumps(types_compiled()))
 """
 
