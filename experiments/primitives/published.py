@@ -1,15 +1,19 @@
 """EMS in the form in which it was published: a reference for its time, not for its answers.
 
-Liu, Wu, Ruan and Chirikjian: Robust and Accurate Superquadric Recovery (CVPR 2022), and the
-hierarchy about it (thesis, Algorithm 1), written from the text in plain NumPy: SciPy's trust
-region method with finite differences over all points, scikit-learn's DBSCAN over all outliers.
+Liu, Wu, Ruan and Chirikjian: Robust and Accurate Superquadric Recovery (CVPR 2022), the
+hierarchy about it and the removal of overlap (thesis, Algorithms 1 and 2), written from the text
+in plain NumPy: SciPy's trust region method with finite differences over all points,
+scikit-learn's DBSCAN over all outliers, and Algorithm 2 with the loops that it is printed with.
 It is not the authors' code. The method `ems` is the same algorithm with compiled kernels,
 analytic derivatives and a sample of the points (docs/decisions/0003-primitive-recovery.md).
 """
 
 from __future__ import annotations
 
+import random
+from collections.abc import Iterator, Sequence
 from dataclasses import dataclass
+from functools import cache
 
 import numpy as np
 from numpy.typing import NDArray
@@ -31,6 +35,8 @@ EVALUATIONS = 2
 OUTLIER, ENOUGH, MOST, LAYERS = 0.1, 0.8, 4, 2
 """Probability of an inlier below which a point is none; share of inliers with which one
 superquadric is enough; superquadrics and layers at most."""
+SAMPLES, OVERLAP = 5000, 0.5
+"""Of Algorithm 2: points of each volume for each pair, and the largest share that may overlap."""
 _LEAST = 0.01
 
 
@@ -46,10 +52,7 @@ class PublishedFit:
 
 
 def published_parts(points: Array, parameters: EmsParameters = PUBLISHED) -> list[PublishedFit]:
-    """Return the superquadrics of an object's points (N, 3), 1 to 4 of them.
-
-    Algorithm 1 of the thesis; Algorithm 2, the removal of overlap, is not part of it.
-    """
+    """Return the superquadrics of an object's points (N, 3), 1 to 4 of them: Algorithm 1."""
     found: list[PublishedFit] = []
     layer = [points]
     for _ in range(LAYERS):
@@ -61,6 +64,71 @@ def published_parts(points: Array, parameters: EmsParameters = PUBLISHED) -> lis
                 below += _clusters(cloud[fit.inlier < OUTLIER], parameters)
         layer = sorted(below, key=len, reverse=True)
     return found
+
+
+def published_kept(parts: Sequence[PublishedFit]) -> list[PublishedFit]:
+    """Return the superquadrics that Algorithm 2 leaves, as it is printed: a loop over points.
+
+    What its text says of two that overlap both ways: the one with the smaller share stays.
+    """
+    rng = random.Random(0)
+    share = np.zeros((len(parts), len(parts)))
+    for i, one in enumerate(parts):
+        for j, reference in enumerate(parts):
+            if i == j:
+                continue
+            inside = 0
+            for x, y, z in _samples(reference, rng):
+                inside += _gauge(one, x, y, z) < 1
+            share[j, i] = inside / SAMPLES
+    return [
+        part
+        for j, part in enumerate(parts)
+        if not any(
+            share[j, i] > OVERLAP and (share[i, j] <= OVERLAP or share[j, i] > share[i, j])
+            for i in range(len(parts))
+        )
+    ]
+
+
+def _samples(part: PublishedFit, rng: random.Random) -> Iterator[tuple[float, float, float]]:
+    """Give points of the volume, in the frame of the cloud, by rejection in the box around it."""
+    a1, a2, a3 = part.values[2:5].tolist()
+    r = _rotation(part)
+    given = 0
+    while given < SAMPLES:
+        u, v, w = (a * rng.uniform(-1, 1) for a in (a1, a2, a3))
+        x, y, z = (
+            row[0] * u + row[1] * v + row[2] * w + middle
+            for row, middle in zip(r, part.values[8:].tolist(), strict=True)
+        )
+        if _gauge(part, x, y, z) < 1:
+            given += 1
+            yield x, y, z
+
+
+@cache
+def _turned(z: float, y: float, x: float) -> list[list[float]]:
+    matrix: list[list[float]] = Rotation.from_euler("ZYX", [z, y, x]).as_matrix().tolist()
+    return matrix
+
+
+def _rotation(part: PublishedFit) -> list[list[float]]:
+    return _turned(*part.values[5:8].tolist())
+
+
+def _gauge(part: PublishedFit, x: float, y: float, z: float) -> float:
+    """Return F of Eq. 3.2 at one point: below 1 inside."""
+    e1, e2, a1, a2, a3, _, _, _, tx, ty, tz = part.values.tolist()
+    r = _rotation(part)
+    x, y, z = x - tx, y - ty, z - tz
+    u = abs(r[0][0] * x + r[1][0] * y + r[2][0] * z) / a1
+    v = abs(r[0][1] * x + r[1][1] * y + r[2][1] * z) / a2
+    w = abs(r[0][2] * x + r[1][2] * y + r[2][2] * z) / a3
+    if max(u, v, w) > 1:  # outside its box; the powers could overflow
+        return 2.0
+    value: float = (u ** (2 / e2) + v ** (2 / e2)) ** (e2 / e1) + w ** (2 / e1)
+    return value
 
 
 def published_fit(points: Array, parameters: EmsParameters = PUBLISHED) -> PublishedFit:

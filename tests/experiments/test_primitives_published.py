@@ -7,7 +7,13 @@ import pytest
 from scipy.spatial.transform import Rotation
 
 from experiments.primitives.model import METHODS, Cut
-from experiments.primitives.published import distances, published_fit, published_parts
+from experiments.primitives.published import (
+    PublishedFit,
+    distances,
+    published_fit,
+    published_kept,
+    published_parts,
+)
 from experiments.primitives.reference import ReferenceTime, reference_table
 from shared.superquadric import Superquadric, radial_distance, surface_mesh
 
@@ -56,6 +62,17 @@ def test_what_one_leaves_over_gets_its_own(can: Superquadric, rng: np.random.Gen
     ball = min(parts, key=lambda part: float(np.linalg.norm(part.values[8:] - other.position)))
     np.testing.assert_allclose(ball.values[8:], other.position, atol=0.01)
     np.testing.assert_allclose(ball.values[2:5], 0.03, atol=0.006)
+
+
+def ball(x: float, radius: float) -> PublishedFit:
+    return PublishedFit(
+        np.array([1.0, 1.0, radius, radius, radius, 0.3, 0.2, 0.1, x, 0.0, 0.8]), np.ones(1)
+    )
+
+
+def test_the_one_that_overlaps_more_goes() -> None:
+    large, within, apart = ball(0.0, 0.05), ball(0.01, 0.04), ball(0.07, 0.04)
+    assert published_kept([within, large, apart]) == [large, apart]
 
 
 def test_the_table_compares_the_same_views() -> None:
