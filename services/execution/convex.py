@@ -95,6 +95,17 @@ def convex_hull(points: Array) -> ConvexPart | None:
     return ConvexPart(points[hull.vertices], renumbered[faces])
 
 
+def hull_volume(points: Array) -> float:
+    """Return the volume of the convex hull of points (N, 3), 0 when they span none."""
+    if len(points) < 4:
+        return 0.0
+    try:
+        volume = float(ConvexHull(points).volume)
+    except QhullError:
+        return 0.0
+    return volume if volume >= MIN_VOLUME else 0.0
+
+
 def write_obj(path: Path, vertices: Array, faces: NDArray[np.int32]) -> None:
     """Write triangles (F, 3) over vertices (V, 3) as a Wavefront OBJ file."""
     lines = [f"v {x:.9g} {y:.9g} {z:.9g}" for x, y, z in vertices.tolist()]

@@ -1,8 +1,9 @@
 """The object's shape as convex parts: a mesh is cut where it is hollow, primitives are convex.
 
-Approximate convex decomposition (Lien and Amato 2007): a piece whose surface lies
-too deep below its hull is cut by a plane, until none does. PyBullet offers V-HACD
-for this; it fills more of what is hollow (docs/decisions/0006-execution.md).
+Approximate convex decomposition (Lien and Amato 2007): of the pieces whose surface lies
+too deep below their hull the one is cut that shrinks most by it, until none is left.
+PyBullet offers V-HACD for this; it fills more of what is hollow
+(docs/decisions/0006-execution.md).
 """
 
 from __future__ import annotations
@@ -14,7 +15,7 @@ import numpy as np
 from numpy.typing import NDArray
 
 from services.execution.convex import ConvexPart, convex_hull
-from services.execution.pieces import Piece, refined
+from services.execution.pieces import Piece
 from services.execution.shells import shells
 from shared.errors import DegenerateCloud
 from shared.superquadric import Superquadric, surface_mesh
@@ -23,7 +24,9 @@ Array = NDArray[np.float64]
 
 TOLERANCE = 0.002
 """Metres that a surface may lie below its part's hull."""
-MAX_PARTS = 24
+MAX_PARTS = 48
+LEAST_GAIN = 0.02
+"""Share of its hull that a cut has to take away from a piece to be worth one part more."""
 MAX_SHELLS = 12
 """A model of more pieces is taken for a soup and cut as a whole."""
 
@@ -65,17 +68,26 @@ def parts_of_mesh(vertices: Array, faces: NDArray[np.int32]) -> list[ConvexPart]
 
 @lru_cache(maxsize=8)
 def _decompose(triangles: bytes) -> tuple[ConvexPart, ...]:
-    """Cut the worst piece until all are convex enough; remembered for the next grasp."""
+    """Cut the piece that gains most until all are convex enough; remembered for the next grasp."""
     surface = np.frombuffer(triangles).reshape(-1, 3, 3)
-    longest = float(np.ptp(surface, axis=(0, 1)).max()) / 20
-    pieces = [Piece(refined(shell, longest)) for shell in _separate(surface)]
-    while len(pieces) < MAX_PARTS:
-        hollow = [piece for piece in pieces if piece.concavity > TOLERANCE]
-        if not hollow:
-            break
-        worst = max(hollow, key=lambda piece: piece.void)
+    pieces = [Piece.of(shell) for shell in _separate(surface)]
+    while len(pieces) < MAX_PARTS and (worst := _most_to_gain(pieces)) is not None:
         pieces = [piece for piece in pieces if piece is not worst] + worst.divided()
     return tuple(piece.hull for piece in pieces if piece.hull is not None)
+
+
+def _most_to_gain(pieces: Sequence[Piece]) -> Piece | None:
+    """Return the piece whose division gains most; small ones cannot gain much, so large first."""
+    worst, most = None, 0.0
+    for piece in sorted(pieces, key=lambda piece: -piece.volume):
+        if piece.volume <= most:
+            break
+        if piece.concavity <= TOLERANCE:
+            continue
+        gain = piece.division.gain
+        if gain > max(most, LEAST_GAIN * piece.volume):
+            worst, most = piece, gain
+    return worst
 
 
 def _separate(surface: Array) -> list[Array]:

@@ -1,34 +1,154 @@
-"""Pieces of a triangle surface, how far each is from convex, and the plane that helps most."""
+"""Pieces of a triangle surface, how far each is from convex, and the cut that helps most."""
 
 from __future__ import annotations
 
+import itertools
+from collections.abc import Iterable, Iterator, Sequence
 from dataclasses import dataclass
 from functools import cached_property
+from typing import NamedTuple
 
 import numpy as np
 from numpy.typing import NDArray
+from scipy.spatial.transform import Rotation
 
-from services.execution.convex import ConvexPart, convex_hull
+from services.execution.convex import ConvexPart, convex_hull, hull_volume
 
 Array = NDArray[np.float64]
 
 SAMPLES = 400
 """Surface samples that a piece is judged by."""
-CORNERS = 1500
-"""Corners that a trial cut is judged by."""
-CUTS = (0.15, 0.3, 0.5, 0.7, 0.85)
+CUTS = (0.25, 0.5, 0.75)
 """Where planes are tried, as shares of the extent along each principal axis."""
+
+
+_DIGITS, _ON, _LEVEL = 7, 1e-9, 1e-3
+"""Corners that agree to so many digits of a metre are one; a corner so near to a plane lies on it,
+metres; planes whose normals span less than this meet nowhere."""
+
+
+_LINE = Rotation.from_euler("xyz", [0.31, 0.57, 0.83]).as_matrix()
+"""Its last column is the direction of the lines: one that no side of a model is likely to have."""
+
+
+class Plane(NamedTuple):
+    """All p with normal (3,) . p = offset."""
+
+    normal: Array
+    offset: float
+
+
+class Division(NamedTuple):
+    """A way to cut a piece: by one plane in two, or by two planes in four.
+
+    Attributes
+    ----------
+    gain : float
+        By how much the hulls shrink together for each piece that is added, cubic metres.
+    planes : tuple of Plane
+    """
+
+    gain: float
+    planes: tuple[Plane, ...]
+
+
+@dataclass(frozen=True)
+class Body:
+    """What is cut: a closed surface's triangles (T, 3, 3), counter-clockwise from outside."""
+
+    triangles: Array
+
+    def holds(self, points: Array) -> NDArray[np.bool_]:
+        """Say which points (K, 3) are inside.
+
+        A line through the point leaves the body once more than it enters it, on either side.
+        Where the surface is open it may do so on one side only; that is enough.
+        """
+        sides, depths = self._projected
+        flat, depth = (points @ _LINE)[:, :2], (points @ _LINE)[:, 2]
+        inside = np.zeros(len(points), dtype=np.bool_)
+        for index, (x, y) in enumerate(flat):
+            within = sides[:, :, 0] * x + sides[:, :, 1] * y + sides[:, :, 2]
+            ahead, behind = (within > 0).all(axis=1), (within < 0).all(axis=1)
+            met = np.flatnonzero(ahead | behind)
+            if len(met):
+                slope_x, slope_y, start = depths[met].T
+                above = slope_x * x + slope_y * y + start > depth[index]
+                # Up through a face that looks up, or down through one that looks down, is out.
+                out = np.where(above == ahead[met], 1, -1)
+                inside[index] = out.sum() != 0
+        return inside
+
+    @cached_property
+    def _projected(self) -> tuple[Array, Array]:
+        """Triangles along `_LINE`: each side as a line (T, 3, 3), and each plane's depth (T, 3).
+
+        (x, y, 1) times a side is positive to its left; times a depth it is z.
+        """
+        corners = self.triangles @ _LINE
+        start, end = corners[:, :, :2], np.roll(corners, -1, axis=1)[:, :, :2]
+        along = end - start
+        rise = start[:, :, 1] * along[:, :, 0] - start[:, :, 0] * along[:, :, 1]
+        sides = np.stack([-along[:, :, 1], along[:, :, 0], -rise], axis=-1)
+        normals = np.cross(corners[:, 1] - corners[:, 0], corners[:, 2] - corners[:, 0])
+        steep = np.abs(normals[:, 2]) < 1e-300
+        scale = np.where(steep, np.inf, normals[:, 2])
+        slopes = -normals[:, :2] / scale[:, None]
+        level = corners[:, 0, 2] - (slopes * corners[:, 0, :2]).sum(axis=1)
+        return sides, np.column_stack([slopes, level])
 
 
 @dataclass(frozen=True)
 class Piece:
-    """Some of a surface's triangles (T, 3, 3), corners counter-clockwise from outside, metres."""
+    """What of a body lies on one side of each of some planes.
+
+    Attributes
+    ----------
+    triangles : (T, 3, 3) array
+        Its part of the body's surface, corners counter-clockwise from outside, metres. Where
+        it was cut it is open.
+    body : Body
+    planes : tuple of Plane
+        The cuts that bound it; it lies where normal . p >= offset.
+    """
 
     triangles: Array
+    body: Body
+    planes: tuple[Plane, ...] = ()
+
+    @classmethod
+    def of(cls, triangles: Array) -> Piece:
+        """Return a whole body of these triangles (T, 3, 3), in triangles that can be cut up."""
+        longest = float(np.ptp(triangles, axis=(0, 1)).max()) / 20
+        return cls(refined(triangles, longest), Body(triangles))
+
+    @cached_property
+    def inner_corners(self) -> Array:
+        """Corners (K, 3) that three cuts made inside the body; its surface does not have them."""
+        points = self._meetings(itertools.combinations(self.planes, 3))
+        return points[self.body.holds(points)]
 
     @cached_property
     def hull(self) -> ConvexPart | None:
-        return convex_hull(self.triangles.reshape(-1, 3))
+        if not len(self.triangles):
+            return None
+        return convex_hull(np.concatenate([self.triangles.reshape(-1, 3), self.inner_corners]))
+
+    def _meetings(self, threes: Iterable[tuple[Plane, ...]]) -> Array:
+        """Return the points (K, 3) in which three planes meet, within this piece's planes."""
+        found = []
+        for three in threes:
+            normals = np.array([plane.normal for plane in three])
+            if abs(np.linalg.det(normals)) > _LEVEL:
+                found.append(np.linalg.solve(normals, [plane.offset for plane in three]))
+        points = np.array(found).reshape(-1, 3)
+        within = [points @ normal - offset >= -_ON for normal, offset in self.planes]
+        return points[np.all(within, axis=0)] if within else points
+
+    @cached_property
+    def volume(self) -> float:
+        """Of the hull, cubic metres."""
+        return 0.0 if self.hull is None else hull_volume(self.hull.vertices)
 
     @cached_property
     def area(self) -> float:
@@ -60,42 +180,124 @@ class Piece:
         """What all but a twentieth of the surface stays within, metres."""
         return float(np.quantile(self.depths, 0.95))
 
-    @property
-    def void(self) -> float:
-        """Roughly the volume between surface and hull, cubic metres."""
-        return float(self.depths.mean()) * self.area
+    @cached_property
+    def division(self) -> Division:
+        """The cut that leaves the least between the surface and the hulls; a gain of 0: none.
 
-    def divided(self) -> list[Piece]:
-        """Return the two pieces of the best of a few cuts across the principal axes."""
+        What counts is the volume of the hulls, for the body's own stays the same. How deep the
+        surface lies below them does not tell: a thin slice of a bowl is a ring that is filled,
+        though nothing of it is deep. No single plane empties a ring, nor the hull of a bowl;
+        two that cross do.
+        """
         if self.hull is None:
-            return []
-        corners = self.triangles.reshape(-1, 3)
-        corners = corners[:: 1 + len(corners) // CORNERS]
+            return Division(0.0, ())
         vertices = self.hull.vertices
         _, axes = np.linalg.eigh(np.cov(vertices.T))
-        trials = [
-            (axis, float(low + share * (high - low)))
-            for axis in axes.T
-            for low, high in [(np.min(vertices @ axis), np.max(vertices @ axis))]
-            for share in CUTS
-        ]
-        _, best = min((self._void_after(corners, *cut), k) for k, cut in enumerate(trials))
-        normal, offset = trials[best]
-        halves = (Piece(clip(self.triangles, side * normal, side * offset)) for side in (1.0, -1.0))
-        return [half for half in halves if half.hull is not None]
+        low, high = (vertices @ axes).min(axis=0), (vertices @ axes).max(axis=0)
 
-    def _void_after(self, corners: Array, normal: Array, offset: float) -> float:
-        """Return the sum of the samples' depths in the halves of a trial cut."""
-        centres, normals = self._samples
-        total = 0.0
-        for side in (1.0, -1.0):
-            hull = convex_hull(corners[side * (corners @ normal - offset) >= 0])
-            if hull is None:
-                return np.inf
-            here = side * (centres @ normal - offset) >= 0
-            if here.any():
-                total += float(_depths(hull, centres[here], normals[here]).sum())
-        return total
+        def across(axis: int, share: float) -> Plane:
+            return Plane(axes[:, axis], float(low[axis] + share * (high[axis] - low[axis])))
+
+        middles = [across(axis, 0.5) for axis in range(3)]
+        trials: list[tuple[Plane, ...]] = [(across(k, share),) for k in range(3) for share in CUTS]
+        trials += itertools.combinations(middles, 2)
+        outline = _Outline.of(self.triangles)
+        best = Division(0.0, ())
+        for planes, corners in zip(trials, self._new_corners(trials), strict=True):
+            after = sum(outline.cell_volumes(planes, np.concatenate([self.inner_corners, corners])))
+            gain = (self.volume - after) / (2 ** len(planes) - 1)
+            if gain > best.gain:
+                best = Division(gain, planes)
+        return best
+
+    def _new_corners(self, trials: Sequence[tuple[Plane, ...]]) -> list[Array]:
+        """Return the inner corners (K, 3) that each of some divisions would make."""
+        met = [
+            self._meetings(
+                three
+                for three in itertools.combinations((*self.planes, *planes), 3)
+                if not all(any(plane is own for own in self.planes) for plane in three)
+            )
+            for planes in trials
+        ]
+        inside = self.body.holds(np.concatenate(met))
+        ends = np.cumsum([len(points) for points in met])[:-1]
+        return [points[kept] for points, kept in zip(met, np.split(inside, ends), strict=True)]
+
+    def divided(self) -> list[Piece]:
+        """Return the pieces of the best division."""
+        pieces = [self]
+        for plane in self.division.planes:
+            pieces = [half for piece in pieces for half in piece._halves(plane)]
+        return [piece for piece in pieces if piece.hull is not None]
+
+    def _halves(self, plane: Plane) -> Iterator[Piece]:
+        for side in (1, -1):
+            own = Plane(side * plane.normal, side * plane.offset)
+            yield Piece(clip(self.triangles, *own), self.body, (*self.planes, own))
+
+
+@dataclass(frozen=True)
+class _Outline:
+    """Corners (N, 3) and edges (E, 2) of triangles (T, 3, 3), each once."""
+
+    triangles: Array
+    corners: Array
+    edges: NDArray[np.intp]
+
+    @classmethod
+    def of(cls, triangles: Array) -> _Outline:
+        corners, number = np.unique(
+            np.round(triangles.reshape(-1, 3), _DIGITS), axis=0, return_inverse=True
+        )
+        number = number.reshape(-1, 3)
+        edges = np.concatenate([number[:, [0, 1]], number[:, [1, 2]], number[:, [2, 0]]])
+        return cls(triangles, corners, np.unique(np.sort(edges, axis=1), axis=0))
+
+    def cell_volumes(self, planes: tuple[Plane, ...], more: Array) -> Iterator[float]:
+        """Give the volume of the hull of each cell; infinite for a sheet that spans none.
+
+        `more` (K, 3) are further points of the body.
+        """
+        cuts = [self._cut(plane) for plane in planes]
+        if len(planes) == 2:
+            cuts.append(self._pierced(*planes))
+        points = np.concatenate([self.corners, *cuts, more])
+        heights = [points @ normal - offset for normal, offset in planes]
+        for sides in itertools.product((1, -1), repeat=len(planes)):
+            inside = np.all(
+                [side * height >= -_ON for side, height in zip(sides, heights, strict=True)], axis=0
+            )
+            volume = hull_volume(points[inside])
+            yield volume if volume > 0 or not inside.any() else np.inf
+
+    def _cut(self, plane: Plane) -> Array:
+        """Return where edges cross a plane (C, 3)."""
+        start, end = (self.corners[each] for each in self.edges.T)
+        above, below = (each @ plane.normal - plane.offset for each in (start, end))
+        crossing = above * below < 0
+        share = above[crossing] / (above[crossing] - below[crossing])
+        return np.asarray(start[crossing] + share[:, None] * (end[crossing] - start[crossing]))
+
+    def _pierced(self, one: Plane, other: Plane) -> Array:
+        """Return where the line in which two planes meet goes through the triangles (C, 3)."""
+        along = np.cross(one.normal, other.normal)
+        normals = np.array([one.normal, other.normal, along])
+        start = np.linalg.solve(normals, [one.offset, other.offset, 0.0])
+        corner, *ends = np.moveaxis(self.triangles, 1, 0)
+        first, second = (end - corner for end in ends)
+        turn = np.cross(along, second)
+        scale = np.einsum("ij,ij->i", first, turn)
+        met = np.abs(scale) > 1e-300
+        corner, first, second, turn, scale = (
+            each[met] for each in (corner, first, second, turn, scale)
+        )
+        across = np.cross(start - corner, first)
+        u = np.einsum("ij,ij->i", start - corner, turn) / scale
+        v = across @ along / scale
+        inside = (u >= 0) & (v >= 0) & (u + v <= 1)
+        away = np.einsum("ij,ij->i", second, across)[inside] / scale[inside]
+        return np.asarray(start + away[:, None] * along)
 
 
 def refined(triangles: Array, longest: float, most: int = 20_000) -> Array:

@@ -37,6 +37,23 @@ def ring(inner: float = 0.03, outer: float = 0.05, height: float = 0.02) -> Mesh
     return vertices, np.array(faces, dtype=np.int32)
 
 
+def bowl(radius: float = 0.07, wall: float = 0.004) -> Mesh:
+    """A closed mesh of a hemispherical bowl, its opening up."""
+    turn = np.linspace(0, 2 * np.pi, 48, endpoint=False)
+    rise = np.radians(np.linspace(-89.9, 0, 12))
+    profile = [(r * np.cos(up), r * np.sin(up)) for r in (radius, radius - wall) for up in rise]
+    profile[12:] = profile[:11:-1]  # up outside, down inside
+    vertices = np.vstack(
+        [np.column_stack([r * np.cos(turn), r * np.sin(turn), np.full(48, z)]) for r, z in profile]
+    )
+    faces = []
+    for level in range(len(profile) - 1):
+        for k in range(48):
+            a, b = 48 * level + k, 48 * level + (k + 1) % 48
+            faces += [(a, b, b + 48), (a, b + 48, a + 48)]
+    return vertices, np.array(faces, dtype=np.int32)
+
+
 def total_volume(parts: list[ConvexPart]) -> float:
     return sum(part.moments()[0] for part in parts)
 
@@ -61,6 +78,29 @@ def test_a_hole_stays_open() -> None:
     assert not covers(parts, np.array([0.0, 0.0, 0.01]))
     assert not covers(parts, np.array([0.02, 0.0, 0.01]))
     assert covers(parts, np.array([0.04, 0.0, 0.01]))
+
+
+def test_a_bowl_keeps_its_wall_and_is_hollow() -> None:
+    vertices, faces = bowl()
+    parts = parts_of_mesh(vertices, faces)
+    enclosed = 2 / 3 * np.pi * (0.07**3 - 0.066**3)
+    full = 2 / 3 * np.pi * 0.07**3
+    assert len(parts) <= MAX_PARTS
+    assert enclosed < total_volume(parts) < 1.6 * enclosed < 0.3 * full
+    for turn in np.radians([10, 130, 250]):
+        across, up = np.array([np.cos(turn), np.sin(turn), 0]), np.array([0, 0, -0.005])
+        assert covers(parts, 0.068 * across + up)  # within the wall, below the rim
+        assert not covers(parts, 0.055 * across + up)
+        assert not covers(parts, 0.03 * across + 3 * up)
+
+
+def test_no_part_of_a_solid_is_lost_where_cuts_cross() -> None:
+    vertices, faces = ring(inner=0.02)
+    parts = parts_of_mesh(vertices, faces)
+    rng = np.random.default_rng(3)
+    turn, radius, height = rng.uniform((0, 0.021, 0), (2 * np.pi, 0.049, 0.02), (400, 3)).T
+    inside = np.column_stack([radius * np.cos(turn), radius * np.sin(turn), height])
+    assert all(covers(parts, point) for point in inside)
 
 
 def test_the_frame_and_the_side_of_the_faces_do_not_matter() -> None:
