@@ -10,6 +10,7 @@ what lies between the nearest two such places left and right of the sample.
 from __future__ import annotations
 
 from collections import Counter
+from concurrent.futures import ThreadPoolExecutor
 
 import numpy as np
 from numpy.typing import NDArray
@@ -17,7 +18,7 @@ from numpy.typing import NDArray
 from services.grasp_proposal.hand import Hand
 from services.grasp_proposal.orientations import Hands
 from services.grasp_proposal.placements import Placements
-from services.grasp_proposal.placing import Reach, place_hands
+from services.grasp_proposal.placing import Found, Reach, place_hands
 from services.grasp_proposal.workspace import Workspace
 
 Array = NDArray[np.float64]
@@ -29,6 +30,10 @@ _TIP_MARGIN = 0.001
 _DEPTHS = np.array([0.005, 0.010, 0.016, 0.023, 0.031, 0.041])
 _LEAST_DEPTH = 0.0005
 _GOOD_ENGAGEMENT = 0.022
+
+_second = ThreadPoolExecutor(max_workers=4, thread_name_prefix="hand-search")
+"""Kernels run without the interpreter's lock, so the second half of a search costs no time where
+a core is free. More threads than one, for several requests at once."""
 
 
 def search(
@@ -50,7 +55,7 @@ def search(
     tip, tried = _depths(workspace, hand, rotation, origin)
     rejected["collision_support"] += int((~hands.possible).sum())
     rejected["collision_support"] += int((~tried.any(axis=1)).sum())
-    found = place_hands(workspace.coarse, points, sample, rotation, tip, tried, _reach(hand))
+    found = _placed(workspace.coarse, points, sample, rotation, tip, tried, _reach(hand))
     rows, which = np.nonzero(found.depth >= 0)
     rejected["too_wide"] += found.too_wide
     rejected["collision_object"] += found.collides
@@ -62,6 +67,38 @@ def search(
         -_BIN * (found.left[rows, which].astype(np.float64) + 0.5),
         _BIN * (found.right[rows, which].astype(np.float64) + 0.5),
         found.front[rows, which],
+    )
+
+
+def _placed(
+    surface: Array,
+    points: Array,
+    sample: NDArray[np.intp],
+    rotation: Array,
+    tip: Array,
+    tried: Mask,
+    reach: Reach,
+) -> Found:
+    """Return what `place_hands` does, half of the samples in a second thread."""
+    middle = int(np.searchsorted(sample, sample[len(sample) // 2])) if len(sample) else 0
+    parts = slice(0, middle), slice(middle, None)
+
+    def place(part: slice) -> Found:
+        return place_hands(
+            surface, points, sample[part], rotation[part], tip[part], tried[part], reach
+        )
+
+    waited_for = _second.submit(place, parts[0])
+    second = place(parts[1])
+    first = waited_for.result()
+    return Found(
+        depth=np.concatenate([first.depth, second.depth]),
+        left=np.concatenate([first.left, second.left]),
+        right=np.concatenate([first.right, second.right]),
+        front=np.concatenate([first.front, second.front]),
+        good=first.good + second.good,
+        too_wide=first.too_wide + second.too_wide,
+        collides=first.collides + second.collides,
     )
 
 
