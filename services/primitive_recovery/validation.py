@@ -107,7 +107,7 @@ def flatness(points: Array) -> str | None:
 
 def _check_size(points: Array) -> None:
     with np.errstate(over="ignore"):
-        extent = min(float(np.ptp(points, axis=0).max()), 1e308)
+        extent = min(float(np.ptp(np.ascontiguousarray(points.T), axis=1).max()), 1e308)
     if extent > LARGEST_OBJECT:
         raise WrongUnits(
             f"points: they spread over {extent:.4g} m, more than any object that can be grasped "
