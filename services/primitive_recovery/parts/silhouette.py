@@ -101,8 +101,10 @@ def spacing(flat: Array) -> float:
 
 
 def _bounds(flat: Array) -> tuple[Array, Array]:
-    """Return lowest corner (2,) and extents (2,) of points (N, 2), column by column: NumPy takes
-    ten times as long along the first axis."""
+    """Return lowest corner (2,) and extents (2,) of points (N, 2).
+
+    Column by column: NumPy takes ten times as long along the first axis.
+    """
     columns = np.ascontiguousarray(flat.T)
     low = columns.min(axis=1)
     return low, columns.max(axis=1) - low
