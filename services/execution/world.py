@@ -13,7 +13,7 @@ from services.execution.body import RigidBody
 from services.execution.bullet import TIME_STEP, Bullet
 from services.execution.convex import write_obj
 from shared.geometry.rotation import quaternion_from_matrix
-from shared.geometry.se3 import matrix_from_pose
+from shared.geometry.se3 import matrix_from_pose, transform_points
 
 Array = NDArray[np.float64]
 
@@ -23,9 +23,8 @@ TABLE_HALF = (1.5, 1.5, 0.02)
 COLLISION_MARGIN = 0.0002
 """Metres that Bullet adds around the object; its default is a millimetre."""
 SETTLE_S = 0.5
-RESTLESS_M = 0.005
-RESTLESS_RAD = 0.09
-"""An object that moves further than this by itself would not stand; it is propped up."""
+RESTLESS_M = 0.008
+"""An object of which a point moves further than this by itself would not stand; it is propped."""
 
 
 class World:
@@ -54,16 +53,16 @@ class World:
         self.bullet.stepSimulation()
 
     def settle(self, propped: bool = True) -> None:
-        """Let the object come to rest; where `propped`, prop it up if it would fall or roll.
+        """Let the object come to rest; where `propped`, prop it up if it would fall, tip or roll.
 
         A shape recovered from one view may not balance although the real object
-        does. The prop is a joint to the world that bears the object's weight and
-        gives way to a push that is stronger; `release` takes it away.
+        does, nor a true one whose parts are of one density here: a pan with a steel pot
+        and a wooden handle, for one. The prop is a joint to the world that bears the
+        object's weight and gives way to a push that is stronger; `release` takes it away.
         """
         for _ in range(round(SETTLE_S / TIME_STEP)):
             self.step()
-        moved, turned = self.displacement(self.body.world_from_body)
-        if propped and (moved > RESTLESS_M or turned > RESTLESS_RAD):
+        if propped and self._strayed() > RESTLESS_M:
             self._prop_up()
         self.rest = self.world_from_body
 
@@ -88,6 +87,13 @@ class World:
         cosine = (np.trace(reference[:3, :3].T @ now[:3, :3]) - 1) / 2
         distance = float(np.linalg.norm(now[:3, 3] - reference[:3, 3]))
         return distance, float(np.arccos(np.clip(cosine, -1, 1)))
+
+    def _strayed(self) -> float:
+        """Return how far the corner that moved most is from where it was seen, metres."""
+        corners = np.concatenate([part.vertices for part in self.body.parts])
+        seen = transform_points(self.body.world_from_body, corners)
+        now = transform_points(self.world_from_body, corners)
+        return float(np.linalg.norm(now - seen, axis=1).max())
 
     def rise(self) -> float:
         """Return how far the centre of mass is above where it rested, in metres."""

@@ -100,6 +100,17 @@ def test_an_object_that_would_fall_is_propped_until_released(bullet: Bullet) -> 
     assert world.displacement(body.world_from_body)[1] > 0.5
 
 
+def test_an_object_that_would_only_tip_is_propped_as_well(bullet: Bullet) -> None:
+    base, beam = box((0.03, 0.03, 0.01), (0, 0, 0.01)), box((0.12, 0.01, 0.005), (0.15, 0, 0.015))
+    world = World(bullet, rigid_body([ConvexPart(*base), ConvexPart(*beam)]))
+    world.settle(propped=False)
+    moved, turned = world.displacement(world.body.world_from_body)
+    assert (moved < 0.003, turned < 0.06) == (True, True)  # yet the end of the beam is down
+    world = World(bullet, rigid_body([ConvexPart(*base), ConvexPart(*beam)]))
+    world.settle()
+    assert world.propped
+
+
 def test_the_client_is_closed_after_an_error() -> None:
     clients = []
 
