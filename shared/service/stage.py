@@ -25,6 +25,9 @@ Out = TypeVar("Out", bound=Message)
 
 log = logging.getLogger("sparge")
 
+AFTERWARDS_S = 5.0
+"""Seconds between a stage's being ready and its further warm-up."""
+
 
 @dataclass(frozen=True)
 class Binding(Generic[In, Out]):
@@ -59,13 +62,28 @@ class WarmUp:
             if self._work is not None:
                 await run_in_threadpool(self._work)
             self._health = Health(status="ready", service=self._service)
-            if self._afterwards is not None:
-                await run_in_threadpool(self._afterwards)
         except Exception as error:
-            log.exception("%s cannot start", self._service)
-            self._health = Health(
-                status="failed", service=self._service, details={"error": str(error)}
-            )
+            self._failed(error)
+
+    async def run_afterwards(self, stopping: asyncio.Event) -> None:
+        """Once ready, wait a while, then do what is left: it is not to delay the first requests.
+
+        Nothing more is begun once `stopping` is set.
+        """
+        await self.run()
+        if self._afterwards is None or self._health.status != "ready":
+            return
+        try:
+            await asyncio.wait_for(stopping.wait(), AFTERWARDS_S)
+        except TimeoutError:
+            try:
+                await run_in_threadpool(self._afterwards)
+            except Exception as error:
+                self._failed(error)
+
+    def _failed(self, error: Exception) -> None:
+        log.exception("%s cannot start", self._service)
+        self._health = Health(status="failed", service=self._service, details={"error": str(error)})
 
     async def health(self) -> Health:
         return self._health
@@ -103,8 +121,8 @@ def create_service(
         Compiles, loads, connects; `/health/ready` turns 200 after it, and no
         route answers before.
     afterwards : callable, optional
-        Warms up what few requests need, once the service is ready; those that come before
-        it is done take longer.
+        Warms up what few requests need, some seconds after the service is ready; those
+        that come before it is done take longer.
     close : callable, optional
         Called at shutdown.
     """
@@ -112,10 +130,12 @@ def create_service(
 
     @asynccontextmanager
     async def lifespan(_: FastAPI) -> AsyncIterator[None]:
-        task = asyncio.create_task(warm.run())
+        stopping = asyncio.Event()
+        task = asyncio.create_task(warm.run_afterwards(stopping))
         try:
             yield
         finally:
+            stopping.set()
             await task
             if close is not None:
                 await run_in_threadpool(close)

@@ -133,7 +133,8 @@ def test_a_stage_answers_only_when_warm() -> None:
         assert client.post("/select", json=BODY).status_code == 200
 
 
-def test_what_few_requests_need_is_warmed_up_afterwards() -> None:
+def test_what_few_requests_need_is_warmed_up_afterwards(monkeypatch: pytest.MonkeyPatch) -> None:
+    monkeypatch.setattr("shared.service.stage.AFTERWARDS_S", 0.0)
     gate, done = threading.Event(), threading.Event()
 
     def later() -> None:
@@ -146,6 +147,13 @@ def test_what_few_requests_need_is_warmed_up_afterwards() -> None:
         gate.set()
         assert done.wait(10.0)
         assert client.request("GET", "/health/ready").status_code == 200
+
+
+def test_who_ends_at_once_does_not_wait_for_it() -> None:
+    calls: list[int] = []
+    with in_process(service(afterwards=lambda: calls.append(1))) as client:
+        assert client.request("POST", "/select", json=BODY).status_code == 200
+    assert calls == []
 
 
 def test_a_failed_warm_up_is_told() -> None:
