@@ -2,6 +2,7 @@
 
 from __future__ import annotations
 
+from collections.abc import Iterable
 from dataclasses import dataclass
 from pathlib import Path
 
@@ -106,8 +107,12 @@ def hull_volume(points: Array) -> float:
     return volume if volume >= MIN_VOLUME else 0.0
 
 
-def write_obj(path: Path, vertices: Array, faces: NDArray[np.int32]) -> None:
-    """Write triangles (F, 3) over vertices (V, 3) as a Wavefront OBJ file."""
-    lines = [f"v {x:.9g} {y:.9g} {z:.9g}" for x, y, z in vertices.tolist()]
-    lines += [f"f {a} {b} {c}" for a, b, c in (faces + 1).tolist()]
+def write_obj(path: Path, meshes: Iterable[tuple[Array, NDArray[np.int32]]]) -> None:
+    """Write meshes, vertices (V, 3) and triangles (F, 3), as groups of a Wavefront OBJ file."""
+    lines, before = [], 1
+    for index, (vertices, faces) in enumerate(meshes):
+        lines.append(f"o part{index}")
+        lines += [f"v {x:.9g} {y:.9g} {z:.9g}" for x, y, z in vertices.tolist()]
+        lines += [f"f {a} {b} {c}" for a, b, c in (faces + before).tolist()]
+        before += len(vertices)
     path.write_text("\n".join(lines) + "\n")

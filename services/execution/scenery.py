@@ -163,7 +163,7 @@ class Scenery:
     def _add_surface(self, surface: Surface) -> int:
         with tempfile.TemporaryDirectory(prefix="sparge-film-") as folder:
             file = Path(folder, "surface.obj")
-            write_obj(file, surface.vertices, surface.faces)
+            write_obj(file, [(surface.vertices, surface.faces)])
             shape = self._bullet.createVisualShape(
                 pybullet.GEOM_MESH, fileName=str(file), rgbaColor=surface.colour
             )

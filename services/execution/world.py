@@ -151,13 +151,12 @@ class World:
 
     def _add_object(self, body: RigidBody) -> int:
         with tempfile.TemporaryDirectory(prefix="sparge-object-") as folder:
-            files = [str(Path(folder, f"{index}.obj")) for index in range(len(body.parts))]
-            for file, part in zip(files, body.parts, strict=True):
-                write_obj(Path(file), part.vertices, part.faces)
-            shape = self.bullet.createCollisionShapeArray(
-                [pybullet.GEOM_MESH] * len(files), fileNames=files
-            )
-            added: int = self.bullet.createMultiBody(  # reads the files once more
+            # One file with a group for each part: Bullet makes a hull of each. An array of
+            # shapes would lose all but the first sixteen, without a word.
+            file = Path(folder, "parts.obj")
+            write_obj(file, ((part.vertices, part.faces) for part in body.parts))
+            shape = self.bullet.createCollisionShape(pybullet.GEOM_MESH, fileName=str(file))
+            added: int = self.bullet.createMultiBody(  # reads the file once more
                 body.mass,
                 shape,
                 basePosition=body.world_from_body[:3, 3],

@@ -64,6 +64,19 @@ def test_a_falling_body_falls_about_its_centre_of_mass(bullet: Bullet) -> None:
     assert world.world_from_body[:2, 3] == pytest.approx([0, 0], abs=1e-4)
 
 
+def test_every_part_of_an_object_is_there(bullet: Bullet) -> None:
+    """Bullet makes bodies of more than sixteen parts in one way only."""
+    turns = np.linspace(0, 2 * np.pi, 40, endpoint=False)
+    where = 0.3 * np.column_stack([np.cos(turns), np.sin(turns), np.full(40, 0.1)])
+    parts = [ConvexPart(*box((0.01, 0.01, 0.03), tuple(place))) for place in where]
+    world = World(bullet, rigid_body(parts))
+    above, below = where + np.array([0, 0, 0.5]), where - np.array([0, 0, 0.029])
+    rays = bullet.rayTestBatch(above.tolist(), below.tolist())
+    assert [ray[0] for ray in rays] == [world.object] * 40
+    beside = bullet.rayTestBatch([[0, 0, 0.5]], [[0, 0, 0.01]])
+    assert beside[0][0] == -1  # not one hull around all of them
+
+
 def test_a_standing_object_stays(bullet: Bullet) -> None:
     body = body_of(box((0.02, 0.03, 0.05), (0, 0, 0.05)))
     world = World(bullet, body)
