@@ -13,7 +13,7 @@ from __future__ import annotations
 import random
 from collections.abc import Iterator, Sequence
 from dataclasses import dataclass
-from functools import cache
+from functools import cached_property
 
 import numpy as np
 from numpy.typing import NDArray
@@ -49,6 +49,12 @@ class PublishedFit:
 
     values: Array
     inlier: Array
+
+    @cached_property
+    def rotation(self) -> list[list[float]]:
+        """Rows of the matrix from its own frame, as plain numbers."""
+        rows: list[list[float]] = Rotation.from_euler("ZYX", self.values[5:8]).as_matrix().tolist()
+        return rows
 
 
 def published_parts(points: Array, parameters: EmsParameters = PUBLISHED) -> list[PublishedFit]:
@@ -94,7 +100,7 @@ def published_kept(parts: Sequence[PublishedFit]) -> list[PublishedFit]:
 def _samples(part: PublishedFit, rng: random.Random) -> Iterator[tuple[float, float, float]]:
     """Give points of the volume, in the frame of the cloud, by rejection in the box around it."""
     a1, a2, a3 = part.values[2:5].tolist()
-    r = _rotation(part)
+    r = part.rotation
     given = 0
     while given < SAMPLES:
         u, v, w = (a * rng.uniform(-1, 1) for a in (a1, a2, a3))
@@ -107,20 +113,10 @@ def _samples(part: PublishedFit, rng: random.Random) -> Iterator[tuple[float, fl
             yield x, y, z
 
 
-@cache
-def _turned(z: float, y: float, x: float) -> list[list[float]]:
-    matrix: list[list[float]] = Rotation.from_euler("ZYX", [z, y, x]).as_matrix().tolist()
-    return matrix
-
-
-def _rotation(part: PublishedFit) -> list[list[float]]:
-    return _turned(*part.values[5:8].tolist())
-
-
 def _gauge(part: PublishedFit, x: float, y: float, z: float) -> float:
     """Return F of Eq. 3.2 at one point: below 1 inside."""
     e1, e2, a1, a2, a3, _, _, _, tx, ty, tz = part.values.tolist()
-    r = _rotation(part)
+    r = part.rotation
     x, y, z = x - tx, y - ty, z - tz
     u = abs(r[0][0] * x + r[1][0] * y + r[2][0] * z) / a1
     v = abs(r[0][1] * x + r[1][1] * y + r[2][1] * z) / a2

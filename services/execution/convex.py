@@ -77,14 +77,8 @@ class ConvexPart:
 
 def convex_hull(points: Array) -> ConvexPart | None:
     """Return the convex hull of points (N, 3), or None when they span no volume."""
-    if len(points) < 4:
-        return None
-    centre = points.mean(axis=0)
-    try:
-        hull = ConvexHull(points - centre)
-    except QhullError:
-        return None
-    if hull.volume < MIN_VOLUME:
+    hull = _qhull(points)
+    if hull is None:
         return None
     renumbered = np.full(len(points), -1, dtype=np.int32)
     renumbered[hull.vertices] = np.arange(len(hull.vertices), dtype=np.int32)
@@ -98,13 +92,19 @@ def convex_hull(points: Array) -> ConvexPart | None:
 
 def hull_volume(points: Array) -> float:
     """Return the volume of the convex hull of points (N, 3), 0 when they span none."""
+    hull = _qhull(points)
+    return 0.0 if hull is None else float(hull.volume)
+
+
+def _qhull(points: Array) -> ConvexHull | None:
+    """Return the hull of points (N, 3) about their mean, or None when they span no volume."""
     if len(points) < 4:
-        return 0.0
+        return None
     try:
-        volume = float(ConvexHull(points).volume)
+        hull = ConvexHull(points - points.mean(axis=0))
     except QhullError:
-        return 0.0
-    return volume if volume >= MIN_VOLUME else 0.0
+        return None
+    return hull if hull.volume >= MIN_VOLUME else None
 
 
 def write_obj(path: Path, meshes: Iterable[tuple[Array, NDArray[np.int32]]]) -> None:

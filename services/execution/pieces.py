@@ -148,7 +148,7 @@ class Piece:
     @cached_property
     def volume(self) -> float:
         """Of the hull, cubic metres."""
-        return 0.0 if self.hull is None else hull_volume(self.hull.vertices)
+        return 0.0 if self.hull is None else self.hull.moments()[0]
 
     @cached_property
     def area(self) -> float:
@@ -215,8 +215,8 @@ class Piece:
         met = [
             self._meetings(
                 three
-                for three in itertools.combinations((*self.planes, *planes), 3)
-                if not all(any(plane is own for own in self.planes) for plane in three)
+                for three in itertools.combinations((*planes, *self.planes), 3)
+                if any(three[0] is plane for plane in planes)
             )
             for planes in trials
         ]

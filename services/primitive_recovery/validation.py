@@ -6,6 +6,7 @@ import numpy as np
 from numpy.typing import NDArray
 
 from shared.errors import DegenerateCloud, EmptyCloud, InvalidInput, PayloadTooLarge, WrongUnits
+from shared.geometry.points import bounds
 
 Array = NDArray[np.float64]
 
@@ -107,7 +108,7 @@ def flatness(points: Array) -> str | None:
 
 def _check_size(points: Array) -> None:
     with np.errstate(over="ignore"):
-        extent = min(float(np.ptp(np.ascontiguousarray(points.T), axis=1).max()), 1e308)
+        extent = min(float(bounds(points)[1].max()), 1e308)
     if extent > LARGEST_OBJECT:
         raise WrongUnits(
             f"points: they spread over {extent:.4g} m, more than any object that can be grasped "

@@ -39,12 +39,7 @@ class Bodies:
     @classmethod
     def of(cls, shapes: Sequence[Superquadric]) -> Bodies:
         """Return these superquadrics, one or more."""
-        rows = np.array(
-            [
-                (*shape.exponents, *shape.semi_axes, *shape.position, *shape.quaternion)
-                for shape in shapes
-            ]
-        )
+        rows = np.array([shape.to_vector() for shape in shapes])
         return cls(rows[:, :2], rows[:, 2:5], rows[:, 5:8], matrix_from_quaternion(rows[:, 8:]))
 
     @property

@@ -30,6 +30,16 @@ def points_from_depth(depth: NDArray[np.generic], intrinsics: Array, depth_scale
     return np.stack([x, v[:, None] * z, z], axis=-1).reshape(-1, 3)
 
 
+def bounds(points: Array) -> tuple[Array, Array]:
+    """Return lowest corner (D,) and extents (D,) of points (N, D).
+
+    Column by column: NumPy takes ten times as long along the first axis.
+    """
+    columns = np.ascontiguousarray(points.T)
+    low = columns.min(axis=1)
+    return low, columns.max(axis=1) - low
+
+
 def principal_axes(points: Array) -> tuple[Array, Array]:
     """Return variances (3,), descending, and axes (3, 3) as right-handed columns."""
     centred = points - points.mean(axis=0)
