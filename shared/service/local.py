@@ -45,8 +45,13 @@ class LocalClient:
             time.sleep(0.02)
 
 
+READY_TIMEOUT_S = 900.0
+"""A first start compiles every kernel: two to three minutes on two idle cores, and several times
+that on a busy machine. What cannot start says so before."""
+
+
 @contextlib.contextmanager
-def in_process(app: FastAPI, ready_timeout_s: float = 120.0) -> Iterator[LocalClient]:
+def in_process(app: FastAPI, ready_timeout_s: float = READY_TIMEOUT_S) -> Iterator[LocalClient]:
     """Run `app` with its lifespan on an event loop of its own thread; ready when this yields."""
     with anyio.from_thread.start_blocking_portal() as portal:
         transport = httpx.ASGITransport(app=app, raise_app_exceptions=False)
