@@ -12,6 +12,7 @@ from __future__ import annotations
 
 import contextlib
 import json
+import os
 from collections.abc import Callable, Iterator, Mapping
 from dataclasses import dataclass
 from typing import Any
@@ -124,9 +125,19 @@ class Sparge:
 
 
 @contextlib.contextmanager
-def connect(url: str, timeout_s: float = 120.0) -> Iterator[Sparge]:
-    """Speak to the backend at `url`."""
-    with httpx.Client(base_url=url, timeout=timeout_s) as http:
+def connect(url: str, timeout_s: float = 120.0, api_key: str | None = None) -> Iterator[Sparge]:
+    """Speak to the backend at `url`.
+
+    Parameters
+    ----------
+    timeout_s : float
+        How long to wait for an answer.
+    api_key : str, optional
+        For a backend that wants one; else the environment variable `SPARGE_API_KEY`.
+    """
+    key = api_key or os.environ.get("SPARGE_API_KEY")
+    headers = {"Authorization": f"Bearer {key}"} if key else {}
+    with httpx.Client(base_url=url, timeout=timeout_s, headers=headers) as http:
         yield Sparge(http.request)
 
 

@@ -59,6 +59,20 @@ class MalformedRequest(SpargeError):
     status = 400
 
 
+class Unauthorized(SpargeError):
+    """No credentials, or wrong ones."""
+
+    code = "unauthorized"
+    status = 401
+
+
+class Forbidden(SpargeError):
+    """Credentials that do not open this, or a place that is not answered from here."""
+
+    code = "forbidden"
+    status = 403
+
+
 class NotFound(SpargeError):
     """No such path or resource."""
 
@@ -143,10 +157,25 @@ class UnknownGripper(InvalidInput):
     code = "unknown_gripper"
 
 
+class BodyTooSlow(SpargeError):
+    """The body did not arrive in time."""
+
+    code = "body_too_slow"
+    status = 408
+
+
 class TooBusy(SpargeError):
-    """All workers are taken; ask again later."""
+    """All workers are taken; ask again later. `details.retry_after_s` says when, if known."""
 
     code = "too_busy"
+    status = 429
+    retry_after_s = 1
+
+
+class RateLimited(SpargeError):
+    """The client asks more often than it may; `details.retry_after_s` says when to go on."""
+
+    code = "rate_limited"
     status = 429
     retry_after_s = 1
 

@@ -13,6 +13,7 @@ from rich.console import Console
 
 from services.cli.dataset import dataset
 from services.cli.experiment import experiment
+from services.cli.key import key_commands
 from services.cli.rule import rule_commands
 from services.cli.task import task_commands
 from shared.errors import SpargeError
@@ -28,6 +29,7 @@ app.command()(dataset)
 app.command()(experiment)
 app.add_typer(task_commands, name="task")
 app.add_typer(rule_commands, name="rule")
+app.add_typer(key_commands, name="key")
 
 
 class Reasoning(StrEnum):
@@ -126,13 +128,26 @@ def serve(
     host: Annotated[str, typer.Option(help="Address to listen on")] = "127.0.0.1",
     port: Annotated[int, typer.Option(min=0, max=65535)] = 8000,
     log_level: Annotated[str, typer.Option(help="debug, info, warning or error")] = "info",
+    insecure: Annotated[
+        bool, typer.Option("--insecure", help="Answer other machines without API keys")
+    ] = False,
 ) -> None:
-    """Serve the backend; stages without a URL in the environment run in this process."""
+    """Serve the backend; stages without a URL in the environment run in this process.
+
+    On another address than the loopback it starts only with API keys (`sparge key`).
+    """
     import uvicorn
 
+    from services.gateway.access import require_guarded
+    from services.gateway.settings import GatewaySettings
+    from services.wiring import create_app
+
+    settings = GatewaySettings()
+    if insecure:
+        settings = settings.model_copy(update={"insecure": True})
+    require_guarded(host, settings)
     uvicorn.run(
-        "services.wiring:create_app",
-        factory=True,
+        create_app(settings),
         host=host,
         port=port,
         log_level=log_level,

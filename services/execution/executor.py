@@ -8,13 +8,16 @@ import threading
 from services.execution.checks import check_request
 from services.execution.settings import ExecutionSettings
 from services.execution.simulator import Simulator
-from shared.errors import StageUnavailable, TooBusy
+from shared.deadline import remaining_s
+from shared.errors import StageUnavailable
 from shared.grippers import load_grippers
 from shared.schemas.execution import ExecuteRequest, ExecuteResponse
 
 
 class Executor:
     """A few simulation processes, each used by one request at a time.
+
+    Who asks while all are at work waits; the service lets no more in at once than there are.
 
     Parameters
     ----------
@@ -46,20 +49,11 @@ class Executor:
             `DegenerateCloud`.
         PayloadTooLarge
             The mesh has too many faces.
-        TooBusy
-            No process became free in time.
         DeadlineExceeded, StageUnavailable
             The simulation took too long, or its process died.
         """
         gripper = check_request(request, self._grippers)
-        try:
-            simulator = self._idle.get(timeout=self._settings.queue_wait_s)
-        except queue.Empty:
-            raise TooBusy(
-                f"all {self._settings.workers} simulation processes have been busy for "
-                f"{self._settings.queue_wait_s:g} s",
-                stage="execution",
-            ) from None
+        simulator = self._idle.get()
         try:
             simulator = self._ready(simulator)
             return simulator.run(request, gripper, self._limit_s(request))
@@ -74,7 +68,7 @@ class Executor:
 
     def _limit_s(self, request: ExecuteRequest) -> float:
         film = self._settings.film_time_s if request.animate else 0.0
-        return self._settings.time_limit_s + film
+        return min(self._settings.time_limit_s + film, max(remaining_s(), 0.0))
 
     def _ready(self, simulator: Simulator | None) -> Simulator:
         if self._closed.is_set():

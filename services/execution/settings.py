@@ -20,7 +20,7 @@ class ExecutionSettings(GripperSettings):
     film_time_s : float
         How much longer it may take when it is filmed.
     queue_wait_s : float
-        How long a request waits for a free process before it is told to come again.
+        Executions take seconds, so more waiting for a free process is worth while.
     executions_per_worker : int
         A process is replaced after this many, whatever native code has leaked.
     """
@@ -32,3 +32,8 @@ class ExecutionSettings(GripperSettings):
     film_time_s: float = Field(default=25.0, ge=0)
     queue_wait_s: float = Field(default=20.0, ge=0)
     executions_per_worker: int = Field(default=500, ge=1)
+
+    @property
+    def concurrency(self) -> int:
+        """How many executions run at once: one in every process."""
+        return self.workers

@@ -13,15 +13,18 @@ from fastapi import FastAPI, Request
 from fastapi.responses import Response
 from starlette.concurrency import run_in_threadpool
 from starlette.datastructures import UploadFile
+from starlette.middleware.cors import CORSMiddleware
 
 from services.gateway import answer
 from services.gateway import request as requests
+from services.gateway.access import Access
 from services.gateway.knowledge import DOCUMENTED as KNOWLEDGE_ROUTES
 from services.gateway.knowledge import serve_knowledge
 from services.gateway.memory import Memory
 from services.gateway.openapi import describe_grasp, describe_knowledge
 from services.gateway.pipeline import Pipeline
 from services.gateway.settings import STAGES, GatewaySettings
+from shared.deadline import within
 from shared.errors import InvalidInput, UnsupportedMediaType
 from shared.schemas.answer import EXPLANATION, KeptExplanation, RequestName
 from shared.schemas.execution import EXECUTE
@@ -39,9 +42,11 @@ from shared.schemas.rule import (
 )
 from shared.schemas.task import ADD_TASK, DELETE_TASK, LIST_AFFORDANCES, LIST_TASKS
 from shared.service import StageClient
+from shared.service.admission import Admission
 from shared.service.app import Health, create_base
 from shared.service.openapi import describe
 from shared.service.request_id import request_id
+from shared.service.secret import secret_headers
 from shared.service.serve import serve
 from shared.wire import JSON, NPZ
 
@@ -82,6 +87,8 @@ def create_app(
     ------
     ValueError
         A stage has neither a URL nor a transport.
+    InvalidInput
+        The file of API keys cannot be read.
     """
     settings = settings or GatewaySettings()
     clients = _connect(settings, transports or {})
@@ -119,10 +126,27 @@ def create_app(
         settings,
         lifespan=lifespan,
         ready=ready,
+        guard=Access(settings),
     )
+    if settings.cors_origins:
+        app.add_middleware(
+            CORSMiddleware,
+            allow_origins=settings.cors_origins,
+            allow_methods=["GET", "POST", "DELETE"],
+            allow_headers=["*"],
+            expose_headers=["X-Request-ID", "Retry-After"],
+        )
+
+    admission: Admission = app.state.admission
 
     @app.post("/grasp", operation_id="post_grasp", response_class=Response)
     async def grasp(request: Request) -> Response:
+        with within(settings.deadline_s):
+            await request.body()  # who sends slowly takes no place
+            async with admission.turn():
+                return await answer_grasp(request)
+
+    async def answer_grasp(request: Request) -> Response:
         started = time.perf_counter()
         parsed = await _parse(request, settings)
         parsing_ms = 1e3 * (time.perf_counter() - started)
@@ -160,13 +184,16 @@ def _connect(
     if missing:
         names = ", ".join(f"SPARGE_GATEWAY_{name.upper()}_URL" for name in missing)
         raise ValueError(f"the gateway does not know where its stages are; set {names}")
+    headers = secret_headers(settings.stage_secret)
     return {
-        name: httpx.AsyncClient(base_url=url, timeout=None, transport=_network())
-        if (url := settings.stage_url(name)) is not None
-        else httpx.AsyncClient(
-            base_url=f"http://{name.replace('_', '-')}", timeout=None, transport=transports[name]
+        name: httpx.AsyncClient(
+            base_url=url or f"http://{name.replace('_', '-')}",
+            timeout=None,
+            headers=headers,
+            transport=_network() if url else transports[name],
         )
         for name in STAGES
+        for url in [settings.stage_url(name)]
     }
 
 

@@ -1,7 +1,7 @@
 """The chain: perception, primitives, reasoning, region, grasps, selection.
 
 Data flows one way; no stage calls back. Every call has what is left of the
-request's deadline.
+request's time (`shared.deadline`).
 """
 
 from __future__ import annotations
@@ -15,7 +15,7 @@ import numpy as np
 
 from services.gateway.request import GraspRequest
 from services.gateway.settings import GatewaySettings
-from shared.errors import DeadlineExceeded, UnknownGripper
+from shared.errors import UnknownGripper
 from shared.schemas.grasp import (
     FIND_REGION,
     LIST_GRIPPERS,
@@ -57,10 +57,10 @@ class Outcome:
 
 @dataclass
 class _Run:
-    """One request under way: its clock and what each stage took."""
+    """One request under way: what each stage took."""
 
     stages: Mapping[str, StageClient]
-    deadline: float
+    deadline_s: float
     timings_ms: dict[str, float] = field(default_factory=dict)
     gripper_opening: float | None = None
     """Of the gripper asked for, metres; None for one without fingers."""
@@ -70,12 +70,7 @@ class _Run:
     ) -> Response:
         name = timed_as or route.service
         started = time.perf_counter()
-        left = self.deadline - started
-        if left <= 0:
-            raise DeadlineExceeded(
-                f"no time was left for the stage {route.service}", stage=route.service
-            )
-        response = await self.stages[route.service].call(route, request, left)
+        response = await self.stages[route.service].call(route, request, self.deadline_s)
         spent = 1e3 * (time.perf_counter() - started)
         self.timings_ms[name] = self.timings_ms.get(name, 0.0) + spent
         return response
@@ -96,7 +91,7 @@ class Pipeline:
         SpargeError
             The error of the stage that refused, or of the chain itself.
         """
-        run = _Run(self._stages, time.perf_counter() + self._settings.deadline_s)
+        run = _Run(self._stages, self._settings.deadline_s)
         scene = await self._perceive(run, request)
         recovered = await self._recover(run, request, scene)
         decision = await self._decide(run, request, scene, recovered)

@@ -2,11 +2,13 @@
 
 from __future__ import annotations
 
+from pathlib import Path
+
 from pydantic import Field
 
 from shared.schemas.primitive import Preset
 from shared.schemas.task import RuleSet
-from shared.settings import ServiceSettings, environment
+from shared.settings import ServiceSettings, environment, processors
 
 STAGES = (
     "perception",
@@ -18,6 +20,10 @@ STAGES = (
 )
 
 
+NETWORKED = 16
+"""Requests worked on at once where every stage is a process of its own."""
+
+
 class GatewaySettings(ServiceSettings):
     """Read from `SPARGE_GATEWAY_*`.
 
@@ -27,7 +33,7 @@ class GatewaySettings(ServiceSettings):
         Where each stage is served. Run alone, the gateway needs all of them;
         in the composition root a stage without a URL runs in the same process.
     deadline_s : float
-        Bound on the time to answer POST /grasp.
+        Bound on the time to answer POST /grasp; a request's `X-Request-Timeout` may be less.
     execution_deadline_s : float
         The same for POST /execute.
     samples : int
@@ -38,6 +44,18 @@ class GatewaySettings(ServiceSettings):
     rule_set : str
         Which rules decide where a request does not say: `default`, or `thesis` for
         those that were published.
+    queue_wait_s : float
+        As for every service. Where stages run in this process, as many requests are worked on
+        at once as there are processors, otherwise `NETWORKED`: the gateway itself does little.
+    api_keys_file : Path or None
+        Who may ask what (`sparge key`); without it only the loopback is answered.
+    insecure : bool
+        Answer everybody who reaches this gateway, without keys.
+    rate_per_s, rate_burst : float or None, float
+        Requests a second that a key without a rate of its own may make in the long run, and at
+        once; None: any number.
+    cors_origins : tuple of str
+        Web pages of these origins may ask; none unless told.
     kept_explanations, keep_explanations_s : int, float
         GET /grasp/{request_id}/explanation knows so many of the latest, for so long.
     approach_distance, retreat_distance : float
@@ -53,15 +71,27 @@ class GatewaySettings(ServiceSettings):
     grasp_proposal_url: str | None = None
     matching_url: str | None = None
     execution_url: str | None = None
+    queue_wait_s: float = Field(default=1.0, ge=0)
     deadline_s: float = Field(default=30.0, gt=0)
     execution_deadline_s: float = Field(default=60.0, gt=0)
     samples: int = Field(default=300, ge=1, le=5000)
     preset: Preset | None = None
     rule_set: RuleSet = "default"
+    api_keys_file: Path | None = None
+    insecure: bool = False
+    rate_per_s: float | None = Field(default=None, gt=0)
+    rate_burst: float = Field(default=10.0, ge=1)
+    cors_origins: tuple[str, ...] = ()
     kept_explanations: int = Field(default=256, ge=0)
     keep_explanations_s: float = Field(default=3600.0, gt=0)
     approach_distance: float = Field(default=0.10, gt=0)
     retreat_distance: float = Field(default=0.10, gt=0)
+
+    @property
+    def concurrency(self) -> int:
+        """How many POST /grasp are worked on at once."""
+        networked = all(self.stage_url(stage) for stage in STAGES)
+        return self.max_running or (NETWORKED if networked else processors())
 
     def stage_url(self, stage: str) -> str | None:
         """Return where `stage` is served, or None."""

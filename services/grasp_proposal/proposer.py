@@ -21,6 +21,7 @@ from services.grasp_proposal.settings import GraspProposalSettings
 from services.grasp_proposal.suction import propose_suction
 from services.grasp_proposal.visibility import SightMap
 from services.grasp_proposal.workspace import Workspace, build_workspace
+from shared.deadline import check_deadline
 from shared.geometry.rotation import quaternion_from_matrix
 from shared.geometry.se3 import transform_points
 from shared.grippers import choose_gripper, load_grippers
@@ -79,6 +80,7 @@ class GraspProposer:
         """
         gripper = choose_gripper(self._grippers, request.gripper)
         workspace = build_workspace(request)
+        check_deadline()
         rejected: Counter[str] = Counter()
         rng = np.random.default_rng(request.seed)
         if isinstance(gripper, SuctionGripper):
@@ -108,6 +110,7 @@ class GraspProposer:
         """Return grasp rows (G, 9), what they hold in focus (G, 3), and if they keep clear (G,)."""
         if not len(contacts.width):
             return np.empty((0, 9)), np.empty((0, 3)), np.empty(0, dtype=np.bool_)
+        check_deadline()
         tips, palm = support_clearance(contacts.placed, hand, contacts.opening, workspace)
         sight = None
         if workspace.viewpoint is not None:
@@ -156,6 +159,7 @@ def _seek(
     for turn_deg in _MORE_TURNS_DEG:
         if sum(len(contacts.width) for contacts in found) >= _ENOUGH:
             break
+        check_deadline()
         placed = candidates(workspace, hand, -(-samples // 2), rng, rejected, turn_deg)
         found.append(passing(workspace, hand, placed, rejected))
     return concatenated(found)

@@ -14,6 +14,7 @@ from services.perception.tabletop import Tabletop
 from services.perception.things import Thing, most_appealing
 from services.perception.units import checked_target
 from services.perception.up import guess_up
+from shared.deadline import check_deadline
 from shared.geometry.points import points_from_depth
 from shared.geometry.rotation import frame_from_z
 from shared.schemas.scene import PerceiveRequest, PerceiveResponse, SupportPlane
@@ -50,7 +51,9 @@ class Perception:
         require_area(view.points)
         target = None if request.target is None else checked_target(request.target, view.points)
         rng = np.random.default_rng(request.seed)
+        check_deadline()
         top = choose_support(view, target, self.settings, rng)
+        check_deadline()
         return self._answer(view, top, most_appealing(top.objects, view, target))
 
     def warm_up(self) -> None:

@@ -8,6 +8,7 @@ text; no text from outside ever becomes part of a Prolog goal.
 from __future__ import annotations
 
 import atexit
+import math
 import sys
 import threading
 from concurrent.futures import Future, ThreadPoolExecutor
@@ -17,6 +18,7 @@ from typing import Any
 
 import orjson
 
+from shared.deadline import check_deadline, remaining_s
 from shared.errors import DeadlineExceeded, InternalError, JsonObject, StageUnavailable
 
 _lock = threading.Lock()
@@ -66,8 +68,8 @@ class Prolog:
         operation : str
             One of those in service.pl.
         timeout_s : float, optional
-            How long to wait; forever without it. Prolog's own limit on
-            inferences ends the work itself.
+            How long to wait, where the request being answered allows as much. Prolog's own
+            limit on inferences ends the work itself.
         **arguments
             JSON-compatible.
 
@@ -78,13 +80,15 @@ class Prolog:
         InternalError
             Rules that do not load, or that raise an error.
         """
+        check_deadline()
+        left_s = min(math.inf if timeout_s is None else timeout_s, remaining_s())
         text = orjson.dumps({"operation": operation, **arguments})
         job: Future[bytes] = self._owner.submit(self._call, "service", "answer", text)
         try:
-            reply = orjson.loads(job.result(timeout_s))
+            reply = orjson.loads(job.result(left_s if math.isfinite(left_s) else None))
         except TimeoutError:
             job.cancel()
-            raise DeadlineExceeded(f"Prolog did not answer within {timeout_s:g} s") from None
+            raise DeadlineExceeded(f"Prolog did not answer within {left_s:.3g} s") from None
         if reply["status"] == "ok":
             result: JsonObject = reply["result"]
             return result

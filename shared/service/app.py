@@ -11,7 +11,8 @@ from fastapi.responses import JSONResponse, Response
 from pydantic import BaseModel
 
 from shared import __version__
-from shared.service.context import RequestContext
+from shared.service.admission import Admission
+from shared.service.context import Guard, RequestContext
 from shared.service.envelope import install_error_handlers
 from shared.service.memory import keep_freed_memory
 from shared.service.telemetry import Metrics
@@ -42,6 +43,7 @@ def create_base(
     *,
     lifespan: Lifespan,
     ready: Callable[[], Awaitable[Health]],
+    guard: Guard,
 ) -> FastAPI:
     """Return a FastAPI application with what all services share.
 
@@ -57,6 +59,8 @@ def create_base(
         Entered before the first request, left after the last.
     ready : callable
         Asked by `/health/ready`; only status `ready` answers 200.
+    guard : callable
+        Raises the error of a request that may not pass.
     """
 
     @asynccontextmanager
@@ -68,9 +72,9 @@ def create_base(
     app = FastAPI(title=f"SPaRGE {name}", summary=summary, version=__version__, lifespan=running)
     metrics = Metrics(name)
     app.state.metrics = metrics
-    app.add_middleware(
-        RequestContext, max_body_bytes=settings.max_body_bytes, observe=metrics.observe
-    )
+    app.state.admission = Admission(name, settings)
+    metrics.watch(app.state.admission)
+    app.add_middleware(RequestContext, settings=settings, observe=metrics.observe, guard=guard)
     install_error_handlers(app)
 
     @app.get("/health/live", tags=["operations"], summary="The process answers")

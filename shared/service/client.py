@@ -13,12 +13,14 @@ from typing import Any, TypeVar
 import httpx
 import orjson
 
+from shared.deadline import DEADLINE_HEADER, remaining_s
 from shared.errors import (
     DeadlineExceeded,
     MethodNotAllowed,
     NoSuchPath,
     SpargeError,
     StageUnavailable,
+    Unauthorized,
     error_from_envelope,
 )
 from shared.schemas.route import Route
@@ -48,7 +50,7 @@ class StageClient:
         self._http = http
 
     async def call(self, route: Route[In, Out], request: In, timeout_s: float) -> Out:
-        """Send `request`, return the answer.
+        """Send `request`, return the answer; the stage is told how much time there is.
 
         Raises
         ------
@@ -57,18 +59,29 @@ class StageClient:
         StageUnavailable
             It cannot be reached, failed, or answered nonsense.
         DeadlineExceeded
-            No answer within `timeout_s` seconds.
+            No answer within `timeout_s` seconds, or by the deadline of the request that is
+            being answered.
         """
+        left_s = min(timeout_s, remaining_s())
+        if left_s <= 0:
+            raise DeadlineExceeded(
+                f"no time was left for the stage {self.service}", stage=self.service
+            )
+        asked = compose(route, request)
+        asked["headers"][DEADLINE_HEADER] = f"{left_s:.3f}"
         try:
-            async with asyncio.timeout(max(timeout_s, 0.0)):
-                response = await self._http.request(**compose(route, request))
+            async with asyncio.timeout(left_s):
+                response = await self._http.request(**asked)
         except (TimeoutError, httpx.TimeoutException):
             raise DeadlineExceeded(
                 f"the stage {self.service} did not answer in time", stage=self.service
             ) from None
         except httpx.TransportError as error:
             raise unavailable(self.service, f"cannot be reached ({type(error).__name__})") from None
-        return read(self.service, route, response)
+        try:
+            return read(self.service, route, response)
+        except Unauthorized:
+            raise unavailable(self.service, "does not take the secret that it is sent") from None
 
     async def health(self, timeout_s: float) -> Health:
         """Ask `/health/ready`; a service that does not answer has status `failed`."""

@@ -7,7 +7,9 @@ never reaches a route.
 from __future__ import annotations
 
 import asyncio
+import contextlib
 import logging
+import math
 import re
 import time
 import uuid
@@ -16,23 +18,37 @@ from collections.abc import Callable
 from starlette.datastructures import Headers, MutableHeaders
 from starlette.types import ASGIApp, Message, Receive, Scope, Send
 
-from shared.errors import InternalError, PayloadTooLarge, SpargeError
+from shared.deadline import DEADLINE_HEADER, within
+from shared.errors import (
+    BodyTooSlow,
+    InternalError,
+    MalformedRequest,
+    PayloadTooLarge,
+    SpargeError,
+)
 from shared.service.envelope import error_response
 from shared.service.request_id import REQUEST_ID_HEADER, request_id
+from shared.settings import ServiceSettings
 
 _VALID_ID = re.compile(r"[A-Za-z0-9._-]{1,64}")
 _DRAIN_FACTOR, _DRAIN_SECONDS = 8, 10.0
 
 Observe = Callable[[Scope, int, float], None]
+Guard = Callable[[Scope], None]
+"""Raises the error of a request that may not pass."""
+
 log = logging.getLogger("sparge")
 
 
 class RequestContext:
-    """ASGI middleware: request id, body limit, timing, and no traceback ever."""
+    """ASGI middleware: request id, guard, deadline, limits of the body, no traceback ever."""
 
-    def __init__(self, app: ASGIApp, *, max_body_bytes: int, observe: Observe) -> None:
+    def __init__(
+        self, app: ASGIApp, *, settings: ServiceSettings, observe: Observe, guard: Guard
+    ) -> None:
         self._app = app
-        self._max_body_bytes = max_body_bytes
+        self._settings = settings
+        self._guard = guard
         self._observe = observe
 
     async def __call__(self, scope: Scope, receive: Receive, send: Send) -> None:
@@ -53,9 +69,11 @@ class RequestContext:
             await send(message)
 
         try:
-            limited = _Limited(receive, headers, self._max_body_bytes)
+            self._guard(scope)
+            limited = _Limited(receive, headers, self._settings)
             await limited.check_declared_length()
-            await self._app(scope, limited, send_with_id)
+            with _deadline(headers):
+                await self._app(scope, limited, send_with_id)
         except Exception as error:
             if not isinstance(error, SpargeError):
                 log.exception("unhandled error in request %s", identifier)
@@ -67,14 +85,34 @@ class RequestContext:
             request_id.reset(token)
 
 
-class _Limited:
-    """A receive channel that counts the body."""
+def _deadline(headers: Headers) -> contextlib.AbstractContextManager[None]:
+    """Return the time that the request says it has."""
+    text = headers.get(DEADLINE_HEADER)
+    if text is None:
+        return contextlib.nullcontext()
+    try:
+        seconds = float(text)
+    except ValueError:
+        seconds = math.nan
+    if not seconds >= 0:
+        raise MalformedRequest(
+            f"{DEADLINE_HEADER} must say how many seconds are left; found {text[:40]!r}",
+            field=DEADLINE_HEADER,
+        )
+    return within(seconds)
 
-    def __init__(self, receive: Receive, headers: Headers, limit: int) -> None:
+
+class _Limited:
+    """A receive channel that counts the body and the time it takes."""
+
+    def __init__(self, receive: Receive, headers: Headers, settings: ServiceSettings) -> None:
         self._receive = receive
         self._headers = headers
-        self._limit = limit
+        self._limit = settings.max_body_bytes
+        self._time_s = settings.body_time_s
+        self._until = time.monotonic() + settings.body_time_s
         self._seen = 0
+        self._whole = False
 
     async def check_declared_length(self) -> None:
         declared = self._headers.get("content-length", "")
@@ -84,7 +122,16 @@ class _Limited:
             raise self._too_large(int(declared))
 
     async def __call__(self) -> Message:
-        message = await self._receive()
+        if self._whole:  # from here on it only tells that the client is gone
+            return await self._receive()
+        try:
+            async with asyncio.timeout(max(self._until - time.monotonic(), 0.0)):
+                message = await self._receive()
+        except TimeoutError:
+            raise BodyTooSlow(
+                f"the body did not arrive within {self._time_s:g} s", allowed=self._time_s
+            ) from None
+        self._whole = not message.get("more_body", False)
         if message["type"] == "http.request":
             self._seen += len(message.get("body", b""))
             if self._seen > self._limit:

@@ -35,7 +35,10 @@ class ErrorEnvelope(BaseModel):
 
 def error_response(error: SpargeError, request_id: str) -> Response:
     """Return the contract's answer for `error`."""
-    headers = {} if error.retry_after_s is None else {"Retry-After": str(error.retry_after_s)}
+    retry_after_s = error.details.get("retry_after_s", error.retry_after_s)
+    headers = {} if retry_after_s is None else {"Retry-After": str(retry_after_s)}
+    if error.status == 401:
+        headers["WWW-Authenticate"] = "Bearer"
     return JSONResponse(error.envelope(request_id), status_code=error.status, headers=headers)
 
 

@@ -55,7 +55,7 @@ def in_process(app: FastAPI, ready_timeout_s: float = READY_TIMEOUT_S) -> Iterat
     """Run `app` with its lifespan on an event loop of its own thread; ready when this yields."""
     with anyio.from_thread.start_blocking_portal() as portal:
         transport = httpx.ASGITransport(app=app, raise_app_exceptions=False)
-        http = httpx.AsyncClient(transport=transport, base_url="http://service", timeout=None)
+        http = httpx.AsyncClient(transport=transport, base_url="http://127.0.0.1", timeout=None)
 
         def send(method: str, path: str, **options: Any) -> httpx.Response:
             return portal.call(functools.partial(http.request, method, path, **options))

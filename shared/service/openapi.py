@@ -18,10 +18,15 @@ REFERENCE = "#/components/schemas/{model}"
 
 _ERRORS = {
     "400": "The body cannot be parsed",
+    "401": "An API key is wanted and was not given, or is not known",
+    "403": "The API key does not open this",
+    "408": "The body did not arrive in time",
     "413": "The body is too large",
     "415": "The content type is not read here",
     "422": "Parsed, but not valid: says which field, what was found, what is allowed",
-    "503": "Not ready; Retry-After says when to ask again",
+    "429": "Too many requests at once; Retry-After says when to ask again",
+    "503": "Not ready, or a stage is down; Retry-After says when to ask again",
+    "504": "The answer was not ready in time",
 }
 
 

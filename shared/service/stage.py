@@ -4,7 +4,7 @@ from __future__ import annotations
 
 import asyncio
 import logging
-from collections.abc import AsyncIterator, Awaitable, Callable, Sequence
+from collections.abc import AsyncIterator, Callable, Sequence
 from contextlib import asynccontextmanager
 from dataclasses import dataclass
 from typing import Any, Generic, TypeVar
@@ -16,7 +16,8 @@ from shared.errors import StageUnavailable
 from shared.schemas.route import Route
 from shared.service.app import Health, create_base
 from shared.service.openapi import describe
-from shared.service.serve import serve
+from shared.service.secret import SecretGuard
+from shared.service.serve import serve_work
 from shared.settings import ServiceSettings
 from shared.wire import Message
 
@@ -38,7 +39,11 @@ class Binding(Generic[In, Out]):
 
 
 def bind(route: Route[In, Out], handler: Callable[[In], Out]) -> Binding[In, Out]:
-    """Say which function answers `route`; it runs in a worker thread, several at once."""
+    """Say which function answers `route`.
+
+    It runs in a worker thread, as many at once as the settings say. One that takes long
+    asks `shared.deadline.check_deadline` between its steps.
+    """
     return Binding(route, handler)
 
 
@@ -140,16 +145,16 @@ def create_service(
             if close is not None:
                 await run_in_threadpool(close)
 
-    app = create_base(name, summary, settings, lifespan=lifespan, ready=warm.health)
+    app = create_base(
+        name,
+        summary,
+        settings,
+        lifespan=lifespan,
+        ready=warm.health,
+        guard=SecretGuard(settings.stage_secret),
+    )
+    admission = app.state.admission
     for binding in handlers:
-        serve(app, binding.route, _in_thread(binding.handler, warm), settings)
+        serve_work(app, binding.route, binding.handler, settings, admission, warm.require)
     describe(app, [binding.route for binding in handlers])
     return app
-
-
-def _in_thread(handler: Callable[[In], Out], warm: WarmUp) -> Callable[[In], Awaitable[Out]]:
-    async def answer(request: In) -> Out:
-        warm.require()
-        return await run_in_threadpool(handler, request)
-
-    return answer

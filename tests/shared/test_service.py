@@ -3,8 +3,11 @@
 from __future__ import annotations
 
 import asyncio
+import math
+import socket
 import threading
 from collections.abc import Callable, Iterator
+from concurrent.futures import ThreadPoolExecutor
 from typing import Any
 
 import httpx
@@ -12,6 +15,7 @@ import numpy as np
 import pytest
 from fastapi import FastAPI
 
+from shared.deadline import remaining_s, within
 from shared.errors import (
     DeadlineExceeded,
     NotFound,
@@ -42,11 +46,12 @@ def service(
     warm_up: Callable[[], object] = lambda: None,
     afterwards: Callable[[], object] | None = None,
     close: Callable[[], object] = lambda: None,
+    **limits: Any,
 ) -> FastAPI:
     return create_service(
         "matching",
         "test",
-        ServiceSettings(max_body_bytes=10_000),
+        ServiceSettings(max_body_bytes=10_000, **limits),
         [bind(SELECT, handler)],
         warm_up=warm_up,
         afterwards=afterwards,
@@ -154,6 +159,77 @@ def test_who_ends_at_once_does_not_wait_for_it() -> None:
     with in_process(service(afterwards=lambda: calls.append(1))) as client:
         assert client.request("POST", "/select", json=BODY).status_code == 200
     assert calls == []
+
+
+def test_a_request_that_came_too_late_is_not_worked_on(client: Client) -> None:
+    late = client.request("POST", "/select", json=BODY, headers={"X-Request-Timeout": "0"})
+    assert (late.status_code, error(late)["code"]) == (504, "deadline_exceeded")
+    odd = client.request("POST", "/select", json=BODY, headers={"X-Request-Timeout": "soon"})
+    assert (odd.status_code, error(odd)["code"]) == (400, "malformed")
+
+
+def test_the_deadline_reaches_the_work_of_a_stage() -> None:
+    left: list[float] = []
+
+    def look(request: SelectRequest) -> SelectResponse:
+        left.append(remaining_s())
+        return echo(request)
+
+    with in_process(service(look)) as client:
+        client.request("POST", "/select", json=BODY, headers={"X-Request-Timeout": "3.5"})
+        client.request("POST", "/select", json=BODY)
+    assert 3.0 < left[0] <= 3.5
+    assert left[1] == math.inf
+
+
+def test_a_client_says_how_much_time_is_left() -> None:
+    sent: list[float] = []
+
+    def answer(request: httpx.Request) -> httpx.Response:
+        sent.append(float(request.headers["X-Request-Timeout"]))
+        return httpx.Response(422, json=UnknownTask("no").envelope("id"))
+
+    for seconds in (5.0, 60.0):
+        with within(10.0), pytest.raises(UnknownTask):
+            call(httpx.MockTransport(answer), timeout_s=seconds)
+    assert sent == pytest.approx([5.0, 10.0], abs=0.5)
+
+
+def test_a_stage_with_no_room_says_when_to_come_again() -> None:
+    gate, begun = threading.Event(), threading.Semaphore(0)
+
+    def wait(request: SelectRequest) -> SelectResponse:
+        begun.release()
+        gate.wait()
+        return echo(request)
+
+    with (
+        in_process(service(wait, max_running=1, max_waiting=0)) as client,
+        ThreadPoolExecutor(1) as others,
+    ):
+        first = others.submit(client.request, "POST", "/select", json=BODY)
+        begun.acquire()
+        refused = client.request("POST", "/select", json=BODY)
+        metrics = client.request("GET", "/metrics").text
+        gate.set()
+        assert first.result().status_code == 200
+    assert (refused.status_code, error(refused)["code"]) == (429, "too_busy")
+    assert int(refused.headers["retry-after"]) >= 1
+    assert 'sparge_queue_running{service="matching"} 1.0' in metrics
+    assert 'sparge_queue_rejected_total{service="matching"} 1.0' in metrics
+
+
+def test_a_body_that_does_not_arrive_is_given_up() -> None:
+    with serving(service(body_time_s=0.2)) as url:
+        host, port = url.removeprefix("http://").split(":")
+        with socket.create_connection((host, int(port)), timeout=10) as slow:
+            slow.sendall(
+                b"POST /select HTTP/1.1\r\nHost: x\r\nContent-Length: 50\r\n"
+                b"Content-Type: application/json\r\n\r\n{"
+            )
+            answer = b"".join(iter(lambda: slow.recv(65536), b"")).decode()
+    assert answer.startswith("HTTP/1.1 408")
+    assert "body_too_slow" in answer
 
 
 def test_a_failed_warm_up_is_told() -> None:

@@ -14,6 +14,7 @@ from services.primitive_recovery.ems.maximization import maximize
 from services.primitive_recovery.ems.start import THINNEST, FitFrame, first_guess
 from services.primitive_recovery.ems.state import State
 from services.primitive_recovery.ems.switch import switch
+from shared.deadline import check_deadline
 from shared.schemas.primitive import EmsParameters
 from shared.superquadric import Superquadric
 
@@ -96,6 +97,7 @@ def _iterate(
 ) -> tuple[State, float]:
     variance, cost, switches = START_VARIANCE, np.inf, 0
     for iteration in range(parameters.max_iterations):
+        check_deadline()
         weights = inlier_probability(
             state.distances(points), variance, parameters.outlier_ratio, volume
         )

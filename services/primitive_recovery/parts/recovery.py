@@ -9,6 +9,7 @@ from services.primitive_recovery.classify import ShapeClassifier
 from services.primitive_recovery.fitting import fit_part
 from services.primitive_recovery.parts.cutter import Cutter
 from services.primitive_recovery.parts.segment import segment
+from shared.deadline import check_deadline
 from shared.schemas.primitive import Joint, Primitive, RecoverRequest, RecoverResponse
 
 Array = NDArray[np.float64]
@@ -41,17 +42,15 @@ def recover_parts(
     up = None if request.up is None else np.array(request.up)
     found = segment(points, viewpoint, request.plane, cutter, others)
     members = [found.labels == part for part in range(len(found.holes))]
-    fits = [
-        fit_part(
-            points[own],
-            viewpoint=viewpoint,
-            plane=request.plane,
-            up=up,
-            others=np.concatenate([points[~own], found.front]),
-            rng=rng,
+    fits = []
+    for own in members:
+        check_deadline()
+        others = np.concatenate([points[~own], found.front])
+        fits.append(
+            fit_part(
+                points[own], viewpoint=viewpoint, plane=request.plane, up=up, others=others, rng=rng
+            )
         )
-        for own in members
-    ]
     shapes = classifier.classify([fit.superquadric for fit in fits])
     primitives = tuple(
         Primitive(
