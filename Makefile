@@ -1,6 +1,6 @@
 # Two commands matter: `make run` and `make test`. `make help` lists the rest.
 .DEFAULT_GOAL := help
-.PHONY: help setup run serve test check bench experiments catalogue train-grasps lock clean
+.PHONY: help setup run serve test load soak compose-load compose-test check bench experiments catalogue train-grasps lock clean
 
 SAMPLE ?= experiments/samples/bottle.npz
 TASK ?= pouring
@@ -20,6 +20,21 @@ serve: setup  ## The embedded backend on http://127.0.0.1:8000
 
 test: setup  ## All tests, on every core (four at most)
 	@.venv/bin/python -m pytest --numprocesses=auto --maxprocesses=4 --dist=worksteal
+
+load: setup  ## The embedded backend under load: 1 to 64 clients, open loop; five minutes
+	@.venv/bin/python -m tests.load
+
+soak: setup  ## Ten minutes of load on the embedded backend with an eye on its memory
+	@.venv/bin/python -m tests.load --clients --rates --soak 600
+
+compose-load: setup  ## The same load on the images, on a Docker engine
+	@docker compose up --detach --build --wait
+	@.venv/bin/python -m tests.load --url http://127.0.0.1:8000 --compose $(notdir $(CURDIR)); \
+	status=$$?; docker compose down; exit $$status
+
+compose-test: setup  ## The images on a real Docker engine: build, ask, scale, kill, stop
+	@docker info >/dev/null 2>&1 || { echo "compose-test: no Docker engine answers" >&2; exit 1; }
+	@SPARGE_COMPOSE_TEST=1 .venv/bin/python -m pytest tests/compose
 
 check: setup  ## ruff and mypy --strict
 	@.venv/bin/ruff check .

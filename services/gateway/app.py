@@ -44,6 +44,7 @@ from shared.schemas.task import ADD_TASK, DELETE_TASK, LIST_AFFORDANCES, LIST_TA
 from shared.service import StageClient
 from shared.service.admission import Admission
 from shared.service.app import Health, create_base
+from shared.service.balance import BalancedTransport
 from shared.service.openapi import describe
 from shared.service.request_id import request_id
 from shared.service.secret import secret_headers
@@ -197,10 +198,9 @@ def _connect(
     }
 
 
-def _network() -> httpx.AsyncHTTPTransport:
-    return httpx.AsyncHTTPTransport(
-        retries=1, limits=httpx.Limits(max_connections=64, max_keepalive_connections=16)
-    )
+def _network() -> httpx.AsyncBaseTransport:
+    limits = httpx.Limits(max_connections=64, max_keepalive_connections=16)
+    return BalancedTransport(httpx.AsyncHTTPTransport(limits=limits))
 
 
 def _forward(

@@ -1,0 +1,1 @@
+"""Load on a backend: closed and open loop, and a soak. `make load`, `make soak`."""
