@@ -90,9 +90,9 @@ class Record:
 async def closed_loop(url: str, clients: int, seconds: float) -> Record:
     """Let `clients` ask, each again as soon as it has its answer; who is refused waits a little."""
     asked, record = questions(), Record(seconds)
-    until = time.perf_counter() + seconds
 
     async def client(http: httpx.AsyncClient) -> None:
+        until = time.perf_counter() + seconds
         while time.perf_counter() < until:
             if await ask(http, next(asked), record) not in ANSWERED:
                 await asyncio.sleep(0.1)
