@@ -40,6 +40,7 @@ from shared.schemas.rule import (
 from shared.schemas.task import ADD_TASK, DELETE_TASK, LIST_AFFORDANCES, LIST_TASKS
 from shared.service import StageClient
 from shared.service.app import Health, create_base
+from shared.service.network import Network
 from shared.service.openapi import describe
 from shared.service.request_id import request_id
 from shared.service.serve import serve
@@ -161,19 +162,15 @@ def _connect(
         names = ", ".join(f"SPARGE_GATEWAY_{name.upper()}_URL" for name in missing)
         raise ValueError(f"the gateway does not know where its stages are; set {names}")
     return {
-        name: httpx.AsyncClient(base_url=url, timeout=None, transport=_network())
+        name: httpx.AsyncClient(
+            base_url=url, timeout=None, transport=Network(settings.requests_per_connection)
+        )
         if (url := settings.stage_url(name)) is not None
         else httpx.AsyncClient(
             base_url=f"http://{name.replace('_', '-')}", timeout=None, transport=transports[name]
         )
         for name in STAGES
     }
-
-
-def _network() -> httpx.AsyncHTTPTransport:
-    return httpx.AsyncHTTPTransport(
-        retries=1, limits=httpx.Limits(max_connections=64, max_keepalive_connections=16)
-    )
 
 
 def _forward(

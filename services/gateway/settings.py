@@ -26,6 +26,9 @@ class GatewaySettings(ServiceSettings):
     perception_url, ... : str or None
         Where each stage is served. Run alone, the gateway needs all of them;
         in the composition root a stage without a URL runs in the same process.
+    requests_per_connection : int
+        After so many requests on average a connection to a stage is closed, so that requests
+        spread over all replicas behind the stage's address.
     deadline_s : float
         Bound on the time to answer POST /grasp.
     execution_deadline_s : float
@@ -53,6 +56,7 @@ class GatewaySettings(ServiceSettings):
     grasp_proposal_url: str | None = None
     matching_url: str | None = None
     execution_url: str | None = None
+    requests_per_connection: int = Field(default=20, ge=1)
     deadline_s: float = Field(default=30.0, gt=0)
     execution_deadline_s: float = Field(default=60.0, gt=0)
     samples: int = Field(default=300, ge=1, le=5000)
