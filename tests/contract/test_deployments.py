@@ -50,9 +50,7 @@ def test_the_network_gives_the_embedded_answer(
             here = embedded.request(
                 "POST", "/grasp", params=question, content=body, headers=headers
             )
-            there = network.post(
-                f"{gateway}/grasp", params=question, content=body, headers=headers
-            )
+            there = network.post(f"{gateway}/grasp", params=question, content=body, headers=headers)
             assert here.status_code == there.status_code == 200, (here.text, there.text)
             assert comparable(here.json()) == comparable(there.json())
 

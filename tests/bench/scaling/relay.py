@@ -62,7 +62,11 @@ async def _serve(url: str) -> tuple[Passed, asyncio.Server]:
 
     async def relay(reader: asyncio.StreamReader, writer: asyncio.StreamWriter) -> None:
         passed.connections += 1
-        there_reader, there_writer = await asyncio.open_connection(target.hostname, target.port)
+        try:
+            there_reader, there_writer = await asyncio.open_connection(target.hostname, target.port)
+        except OSError:  # nobody listens there yet: hang up, too
+            writer.close()
+            return
         await asyncio.gather(
             _pass_on(reader, there_writer, passed, "sent"),
             _pass_on(there_reader, writer, passed, "answered"),
