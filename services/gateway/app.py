@@ -51,6 +51,9 @@ from shared.service.secret import secret_headers
 from shared.service.serve import serve
 from shared.wire import JSON, NPZ
 
+LIMITS = httpx.Limits(max_connections=256, max_keepalive_connections=64, keepalive_expiry=3.0)
+"""Of connections to stages. An idle one is given up before uvicorn does, after 5 s: a request on a
+connection that is just being closed is lost."""
 FORM = "multipart/form-data"
 _HEALTH_TIMEOUT_S = 5.0
 _PASSED_ON: tuple[Route[Any, Any], ...] = (
@@ -199,8 +202,7 @@ def _connect(
 
 
 def _network() -> httpx.AsyncBaseTransport:
-    limits = httpx.Limits(max_connections=64, max_keepalive_connections=16)
-    return BalancedTransport(httpx.AsyncHTTPTransport(limits=limits))
+    return BalancedTransport(httpx.AsyncHTTPTransport(limits=LIMITS))
 
 
 def _forward(

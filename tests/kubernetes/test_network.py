@@ -1,0 +1,81 @@
+"""Who may talk to whom, by the policies as Kubernetes reads them."""
+
+from __future__ import annotations
+
+from collections.abc import Iterator, Mapping
+from typing import Any
+
+from tests.kubernetes.manifests import Object, of_kind, pod_labels, pod_of, selects
+
+Labels = Mapping[str, str]
+STRANGER: Labels = {"app.kubernetes.io/name": "somebody"}
+
+
+def allowed(policies: list[Object], source: Labels | None, target: Labels | None) -> set[Any]:
+    """Return the ports on which `source` may reach `target`; None is outside of the namespace.
+
+    A policy isolates the pods that it selects; what any of their policies lets through, passes.
+    Both ends have to let it through.
+    """
+    leaving = _passing(policies, "Egress", source, target)
+    coming = _passing(policies, "Ingress", target, source)
+    if leaving is None or coming is None:
+        return {"any"} if leaving is coming else (coming if leaving is None else leaving) or set()
+    return leaving & coming
+
+
+def _passing(
+    policies: list[Object], direction: str, here: Labels | None, there: Labels | None
+) -> set[Any] | None:
+    """Return the ports that the policies of `here` open to `there`; None: all of them."""
+    if here is None:
+        return None
+    mine = [
+        each["spec"]
+        for each in policies
+        if selects(each["spec"]["podSelector"], here) and direction in each["spec"]["policyTypes"]
+    ]
+    if not mine:
+        return None
+    return {port for spec in mine for port in _opened(spec, direction, there)}
+
+
+def _opened(spec: Object, direction: str, there: Labels | None) -> Iterator[Any]:
+    peers = "to" if direction == "Egress" else "from"
+    for rule in spec.get(direction.lower(), []):
+        meant = peers not in rule or (
+            there is not None and any(selects(each["podSelector"], there) for each in rule[peers])
+        )
+        if meant:
+            yield from (port["port"] for port in rule["ports"])
+
+
+def test_only_the_gateway_reaches_the_stages(objects: list[Object]) -> None:
+    policies = list(of_kind(objects, "NetworkPolicy").values())
+    labels = {n: pod_labels(each) for n, each in of_kind(objects, "Deployment").items()}
+    gateway = labels.pop("gateway")
+    assert len(labels) == 6
+    for stage in labels.values():
+        assert allowed(policies, gateway, stage) == {"http"}
+        assert allowed(policies, None, stage) == set()
+        assert allowed(policies, STRANGER, stage) == set()
+        for other in (*labels.values(), gateway, None):
+            assert allowed(policies, stage, other) == set(), "a stage asks nobody"
+
+
+def test_the_gateway_is_reached_and_asks_for_names_and_stages(objects: list[Object]) -> None:
+    policies = list(of_kind(objects, "NetworkPolicy").values())
+    gateway = pod_labels(of_kind(objects, "Deployment")["gateway"])
+    assert allowed(policies, None, gateway) == {"http"}
+    assert allowed(policies, gateway, None) == {53}
+
+
+def test_policies_name_a_port_that_pods_have(objects: list[Object]) -> None:
+    for deployment in of_kind(objects, "Deployment").values():
+        (container,) = pod_of(deployment)["containers"]
+        assert [port["name"] for port in container["ports"]] == ["http"]
+
+
+def test_without_policies_everything_passes() -> None:
+    """The reading of policies can say that something is open."""
+    assert allowed([], None, STRANGER) == {"any"}
