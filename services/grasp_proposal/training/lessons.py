@@ -108,6 +108,8 @@ def lessons_of(arrays: Arrays) -> list[Lessons]:
         gripper = grippers[str(name)]
         assert isinstance(gripper, ParallelGripper)
         mine = arrays["question"] == question
+        if not mine.any():  # no grasp of it could be tried
+            continue
         lesson = _lessons(arrays, question, mine, Hand.of(gripper, settings))
         if len(lesson):
             found.append(lesson)

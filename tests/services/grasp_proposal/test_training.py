@@ -82,6 +82,14 @@ def test_lessons_are_what_the_proposer_shows_the_network() -> None:
     assert np.abs(again - arrays["grasps"][:, 8]).max() < 0.1
 
 
+def test_a_question_none_of_whose_grasps_was_tried_teaches_nothing() -> None:
+    arrays = trial(0)
+    regions = np.concatenate([arrays["regions"], arrays["regions"]])
+    more = arrays | {"regions": regions, "grippers": np.array(["panda", "panda"])}
+    (lesson,), (same,) = lessons_of(arrays), lessons_of(more)
+    np.testing.assert_array_equal(lesson.numbers, same.numbers)
+
+
 def test_a_folder_without_trials_is_an_error(tmp_path: Path) -> None:
     with pytest.raises(InvalidInput, match="no trials"):
         read_lessons(tmp_path)
