@@ -16,7 +16,7 @@ SERVICES = (
     "gateway",
 )
 SHARED_LAYERS = (  # lowest first; a module may import its own layer and those before it
-    {"errors", "geometry"},
+    {"errors", "geometry", "output"},
     {"superquadric"},
     {"settings", "wire"},
     {"schemas"},
