@@ -13,7 +13,6 @@ from typing import Any, Protocol
 import orjson
 
 from services.annotate.question import Question
-from services.wiring import embedded
 from shared.client import GraspResult, Sparge
 from shared.errors import EmptyCloud
 from shared.schemas.grasp import LIST_GRIPPERS
@@ -79,5 +78,7 @@ class EmbeddedPipeline:
 @contextlib.contextmanager
 def start_embedded() -> Iterator[Pipeline]:
     """Run the whole backend in this process."""
+    from services.wiring import embedded
+
     with embedded(READY_TIMEOUT_S) as sparge:
         yield EmbeddedPipeline(sparge)

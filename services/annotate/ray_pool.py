@@ -104,6 +104,11 @@ class RayPool:
     def idle(self) -> int:
         return len(self._idle)
 
+    @property
+    def ready(self) -> int:
+        """How many workers have started: idle or at work."""
+        return len(self._idle) + sum(each.job is not None for each in self._busy.values())
+
     def give(self, job: Job) -> None:
         actor = self._idle.pop()
         self._busy[actor.ask.remote(job)] = _Busy(actor, job)

@@ -23,6 +23,16 @@ _PRIVATE = {
 }
 
 
+def private_ray() -> None:
+    """Set Ray up, before it is imported, for a cluster that nobody else can reach.
+
+    What the user has set stays; where Ray was imported before, its settings stand.
+    """
+    if "ray" not in sys.modules:
+        for name, value in {**_PRIVATE, "RAY_AUTH_TOKEN": secrets.token_hex(32)}.items():
+            os.environ.setdefault(name, value)
+
+
 @contextlib.contextmanager
 def ray_session(address: str | None, workers: int | None) -> Iterator[int]:
     """Connect to Ray; yield how many workers there will be.
@@ -45,12 +55,9 @@ def ray_session(address: str | None, workers: int | None) -> Iterator[int]:
         There is no cluster at `address`, or Ray cannot be started here.
     """
     os.environ.setdefault("RAY_USAGE_STATS_ENABLED", "0")
-    if address is None and "ray" not in sys.modules:
-        for name, value in _PRIVATE.items():
-            os.environ.setdefault(name, value)
-        os.environ.setdefault("RAY_AUTH_TOKEN", secrets.token_hex(32))
+    if address is None:
+        private_ray()
     import ray
-    from ray.exceptions import RayError
 
     here: dict[str, Any] = {
         "num_cpus": workers or len(os.sched_getaffinity(0)),
@@ -63,7 +70,7 @@ def ray_session(address: str | None, workers: int | None) -> Iterator[int]:
         ray.init(
             **(here if address is None else there), log_to_driver=False, logging_level=logging.ERROR
         )
-    except (ConnectionError, ValueError, RuntimeError, RayError) as error:
+    except Exception as error:  # Ray's own are of many kinds, `Exception` among them
         what = "Ray cannot be started" if address is None else f"no Ray cluster at {address}"
         reason = str(error).strip().partition("\n")[0]
         raise StageUnavailable(f"{what}: {reason}") from None
