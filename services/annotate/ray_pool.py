@@ -20,8 +20,6 @@ from shared.errors import Conflict, SpargeError, StageUnavailable
 
 START_TIMEOUT_S = READY_TIMEOUT_S + 60.0
 _POLL_S = 1.0
-_THREADS = {"OMP_NUM_THREADS": "1"}
-"""As many threads as Ray counts processors, before the worker's process begins."""
 
 
 @dataclass
@@ -62,10 +60,9 @@ class RayPool:
     ) -> None:
         self._size, self._patience_s = size, patience_s
         self._make = ray.remote(
-            num_cpus=1,
+            num_cpus=1,  # Ray tells OpenMP and BLAS of it as well
             max_restarts=0,  # we replace them ourselves, and know on which job one died
             max_task_retries=0,
-            runtime_env={"env_vars": _THREADS},
         )(Worker).remote
         self._arguments = (start, question, dict(environment))
         self._idle: list[Any] = []

@@ -20,6 +20,7 @@ _PRIVATE = {
     # opened on the loopback alone. By default any interface would be listened on.
     "RAY_ENABLE_WINDOWS_OR_OSX_CLUSTER": "0",
     "RAY_AUTH_MODE": "token",
+    "OMP_NUM_THREADS": "1",  # what Ray sets for a worker of one CPU, if nothing is set
 }
 
 

@@ -5,7 +5,9 @@ Ray keeps threads and settings in the process that imports it, so tests start th
 
 from __future__ import annotations
 
+import contextlib
 import json
+import os
 import sys
 from pathlib import Path
 from typing import Any
@@ -31,7 +33,8 @@ def cluster(folder: Path, out: Path) -> dict[str, Any]:
     from services.annotate.ray_pool import RayPool
 
     nodes = Cluster(
-        initialize_head=True, head_node_args={"num_cpus": 1, "include_dashboard": False}
+        initialize_head=True,
+        head_node_args={"num_cpus": 1, "include_dashboard": False, "include_log_monitor": False},
     )
     second = nodes.add_node(num_cpus=1)
     told: dict[str, Any] = {}
@@ -50,11 +53,41 @@ def cluster(folder: Path, out: Path) -> dict[str, Any]:
         terms = pool.start()
         while pool.ready < workers:
             pool.take()
+        told["listens_on"] = sorted(listening())
         driver = Driver(folder, QUESTION, terms, book, 1000, progress=kill)
         summary = driver.run(find_inputs(folder), pool)
         told["nodes_after"] = sum(node["Alive"] for node in ray.nodes())
     nodes.shutdown()
     return {**told, "annotated": summary.annotated}
+
+
+def listening() -> set[str]:
+    """Return the addresses that this process and all below it listen on, as the kernel has them."""
+    ours = {os.getpid()}
+    for _ in range(4):  # driver, raylet, worker, and what that starts
+        ours |= {process for process, parent in parents().items() if parent in ours}
+    sockets = {
+        str(link.readlink())
+        for process in ours
+        for link in Path(f"/proc/{process}/fd").glob("*")
+        if link.is_symlink()
+    }
+    found = set()
+    for table in ("tcp", "tcp6"):
+        for line in Path(f"/proc/net/{table}").read_text().splitlines()[1:]:
+            fields = line.split()
+            if fields[3] == "0A" and f"socket:[{fields[9]}]" in sockets:
+                found.add(fields[1].partition(":")[0])
+    return found
+
+
+def parents() -> dict[int, int]:
+    """Return the parent of every process."""
+    found = {}
+    for path in Path("/proc").glob("[0-9]*/stat"):
+        with contextlib.suppress(OSError):  # ended meanwhile
+            found[int(path.parent.name)] = int(path.read_text().rpartition(")")[2].split()[1])
+    return found
 
 
 if __name__ == "__main__":

@@ -19,6 +19,8 @@ from services.annotate.drive import MAX_ATTEMPTS
 from tests.support.annotating import rejects, rows, settled, write_inputs
 
 ROOT = Path(__file__).parents[3]
+LOOPBACK = {"0100007F", "0000000000000000FFFF00000100007F", "00000000000000000000000001000000"}
+"""127.0.0.1, the same as an IPv6 address, and ::1, as /proc/net has them."""
 FILES = {f"{number:03d}.xyz": f"cloud {number}" for number in range(100)}
 
 
@@ -28,7 +30,7 @@ def on_ray(*words: str) -> dict[str, Any]:
         [sys.executable, "-W", "error", "-m", "tests.support.ray_run", *words],
         capture_output=True,
         text=True,
-        timeout=240,
+        timeout=600,
         cwd=ROOT,
     )
     assert done.returncode == 0, done.stderr
@@ -46,6 +48,8 @@ def test_a_node_is_killed_in_the_middle(tmp_path: Path) -> None:
     }
     folder, out = write_inputs(tmp_path / "in", files), tmp_path / "out"
     told = on_ray("cluster", str(folder), str(out))
+    assert set(told["listens_on"]) <= LOOPBACK
+    assert told["listens_on"]
     assert told["nodes_before"] == 2
     assert told["nodes_after"] == 1
     assert 20 <= told["settled_at_the_kill"] < 50
