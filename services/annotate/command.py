@@ -37,6 +37,9 @@ class Options:
         Ask again about what was rejected in an earlier run.
     start : callable
         Starts a worker's pipeline.
+    patience_s : float or None
+        How long a worker may take for a question; None: twice the gateway's deadline and
+        30 s, since the backend gives up at the deadline unless it hangs.
     """
 
     address: str | None = None
@@ -44,6 +47,7 @@ class Options:
     part_rows: int = 256
     retry_rejects: bool = False
     start: StartPipeline = start_embedded
+    patience_s: float | None = None
 
 
 def annotate(
@@ -67,7 +71,7 @@ def annotate(
     progress(0, total)
     gateway = GatewaySettings()
     settings = {name: text for name, text in os.environ.items() if name.startswith("SPARGE_")}
-    patience_s = 2 * gateway.deadline_s + 30.0  # the backend gives up before, unless it hangs
+    patience_s = options.patience_s or 2 * gateway.deadline_s + 30.0
     with sole_writer(out), ray_session(options.address, options.workers) as workers:
         from services.annotate.ray_pool import RayPool  # imports Ray, which is set up by now
 

@@ -6,11 +6,14 @@ from collections import Counter, deque
 from collections.abc import Callable, Iterator, Sequence
 from dataclasses import dataclass, field
 from pathlib import Path
+from typing import TYPE_CHECKING
 
-from services.annotate.book import Book, Settled
 from services.annotate.inputs import name_of, read_input
 from services.annotate.pool import WorkerPool
 from services.annotate.question import Job, Question, Refusal, Terms
+
+if TYPE_CHECKING:
+    from services.annotate.book import Book, Settled
 
 MAX_ATTEMPTS = 3
 """How often a file is asked about when workers die on it, or fail for reasons of their own."""

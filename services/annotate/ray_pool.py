@@ -122,7 +122,7 @@ class RayPool:
 
     def _hire(self) -> None:
         actor = self._make(*self._arguments)
-        self._busy[actor.terms.remote()] = _Busy(actor, None)
+        self._busy[actor.start.remote()] = _Busy(actor, None)
 
     def _finish(self, ref: Any, busy: _Busy) -> Finished | None:
         try:
@@ -176,7 +176,8 @@ class RayPool:
     def _check_starts(self) -> None:
         """Do not wait forever for the only workers that there could be."""
         waited = [time.monotonic() - each.since for each in self._busy.values() if not each.job]
-        if len(waited) == self._size and min(waited) > START_TIMEOUT_S:
+        all_start = not self._idle and len(waited) == len(self._busy) > 0
+        if all_start and min(waited) > START_TIMEOUT_S:
             raise StageUnavailable(
                 f"no worker became ready within {START_TIMEOUT_S:g} s; are there CPUs to spare?"
             )

@@ -28,24 +28,21 @@ class Worker:
         self, start: StartPipeline, question: Question, environment: Mapping[str, str]
     ) -> None:
         os.environ.update(environment)
+        self._start, self._question = start, question
         self._running = ExitStack()  # ends with the process
-        self._pipeline = self._running.enter_context(start())
-        self._question = question
-        self._terms: Terms | None = None
 
-    def terms(self) -> Terms:
-        """Return what this worker's answers depend on beside file and task.
+    def start(self) -> Terms:
+        """Start the pipeline; return what its answers depend on beside file and task.
 
         Raises
         ------
         SpargeError
-            The question cannot be asked.
+            It cannot be started, or the question not be asked.
         """
-        if self._terms is None:
-            backend = self._pipeline.check(self._question)
-            self._terms = Terms(self._question.settings, backend)
+        self._pipeline = self._running.enter_context(self._start())
+        self._terms = Terms(self._question.settings, self._pipeline.check(self._question))
         return self._terms
 
     def ask(self, job: Job) -> Any:
         """Return the row or the `Refusal` of a job."""
-        return label(self._pipeline, job, self._question.parameters, self.terms())
+        return label(self._pipeline, job, self._question.parameters, self._terms)

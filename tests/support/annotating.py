@@ -2,17 +2,14 @@
 
 from __future__ import annotations
 
-import contextlib
 import hashlib
 import os
 import time
-from collections.abc import Iterator
 from pathlib import Path
 from typing import Any
 
 import numpy as np
 
-from services.annotate.pipeline import Pipeline
 from services.annotate.question import Question
 from shared.client import GraspResult
 from shared.errors import DeadlineExceeded, EmptyCloud
@@ -99,12 +96,6 @@ def answer(rng: np.random.Generator, task: str, *, found: bool = True) -> GraspR
         point_region=(assigned == 1) & found,
         grasps=rng.uniform(0.0, 1.0, (3 if found else 0, 9)),
     )
-
-
-@contextlib.contextmanager
-def start_light() -> Iterator[Pipeline]:
-    """Start it in a worker."""
-    yield LightPipeline()
 
 
 def write_inputs(folder: Path, contents: dict[str, str]) -> Path:

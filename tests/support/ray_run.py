@@ -9,29 +9,38 @@ import contextlib
 import json
 import os
 import sys
+import time
+from collections.abc import Iterator
 from pathlib import Path
 from typing import Any
 
-from services.annotate.book import Book
-from services.annotate.drive import Driver
-from services.annotate.inputs import find_inputs
+from services.annotate.command import Options, annotate
+from services.annotate.pipeline import Pipeline
 from services.annotate.question import Question
-from services.annotate.ray_session import private_ray, ray_session
-from tests.support.annotating import start_light
+from services.annotate.ray_session import private_ray
+from tests.support.annotating import LightPipeline
 
 QUESTION = Question(("pouring",), {"seed": 0})
-KILL_AT = 20
-PATIENCE_S = 1.0
+ALL_AT_WORK, KILL_AT = 10, 30
+_STARTED = "SPARGE_TEST_STARTED"
 
 
-def cluster(folder: Path, out: Path) -> dict[str, Any]:
-    """Run on two nodes of one CPU each; kill the second when `KILL_AT` questions are settled."""
-    private_ray()
+@contextlib.contextmanager
+def start_light() -> Iterator[Pipeline]:
+    """Start the light pipeline, and leave a file that says on which node."""
     import ray
+
+    node = ray.get_runtime_context().get_node_id()
+    (Path(os.environ[_STARTED]) / node).touch()
+    yield LightPipeline()
+
+
+def cluster(folder: Path, out: Path, started: Path) -> dict[str, Any]:
+    """Annotate on two nodes of one CPU each; kill the second at `KILL_AT` settled questions."""
+    private_ray()
     from ray.cluster_utils import Cluster
 
-    from services.annotate.ray_pool import RayPool
-
+    os.environ[_STARTED] = str(started)
     nodes = Cluster(
         initialize_head=True,
         head_node_args={"num_cpus": 1, "include_dashboard": False, "include_log_monitor": False},
@@ -39,24 +48,17 @@ def cluster(folder: Path, out: Path) -> dict[str, Any]:
     second = nodes.add_node(num_cpus=1)
     told: dict[str, Any] = {}
 
-    def kill(settled: int) -> None:
-        if settled >= KILL_AT and "settled_at_the_kill" not in told:
-            told["settled_at_the_kill"] = settled
+    def progress(settled: int, _: int) -> None:
+        if settled >= ALL_AT_WORK and "workers_on" not in told:
+            while len(on := [path.name for path in started.iterdir()]) < 2:
+                time.sleep(0.1)
+            told.update(workers_on=sorted(on), listens_on=sorted(listening()))
+        if settled >= KILL_AT and "killed" not in told:
             nodes.remove_node(second, allow_graceful=False)
+            told.update(killed=second.node_id, settled_then=settled)
 
-    with (
-        ray_session(nodes.address, None) as workers,
-        Book(out, part_rows=8) as book,
-        RayPool(workers, start_light, QUESTION, {}, PATIENCE_S) as pool,
-    ):
-        told["nodes_before"] = sum(node["Alive"] for node in ray.nodes())
-        terms = pool.start()
-        while pool.ready < workers:
-            pool.take()
-        told["listens_on"] = sorted(listening())
-        driver = Driver(folder, QUESTION, terms, book, 1000, progress=kill)
-        summary = driver.run(find_inputs(folder), pool)
-        told["nodes_after"] = sum(node["Alive"] for node in ray.nodes())
+    options = Options(nodes.address, part_rows=8, start=start_light, patience_s=1.0)
+    summary = annotate(folder, out, QUESTION, options, progress)
     nodes.shutdown()
     return {**told, "annotated": summary.annotated}
 

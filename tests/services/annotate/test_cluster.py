@@ -46,13 +46,14 @@ def test_a_node_is_killed_in_the_middle(tmp_path: Path) -> None:
         "080-poison.xyz": "poison",
         "090-hang.xyz": f"hang {tmp_path / 'hung'}",
     }
-    folder, out = write_inputs(tmp_path / "in", files), tmp_path / "out"
-    told = on_ray("cluster", str(folder), str(out))
+    folder, out, started = write_inputs(tmp_path / "in", files), tmp_path / "out", tmp_path / "up"
+    started.mkdir()
+    told = on_ray("cluster", str(folder), str(out), str(started))
     assert set(told["listens_on"]) <= LOOPBACK
     assert told["listens_on"]
-    assert told["nodes_before"] == 2
-    assert told["nodes_after"] == 1
-    assert 20 <= told["settled_at_the_kill"] < 50
+    assert len(told["workers_on"]) == 2
+    assert told["killed"] in told["workers_on"]
+    assert 30 <= told["settled_then"] < 70
     assert settled(out) == sorted((name, "pouring") for name in files)
     assert {path: (row["code"], row["attempts"]) for (path, _), row in rejects(out).items()} == {
         "070-empty.xyz": ("empty_cloud", 1),
