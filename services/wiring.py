@@ -7,8 +7,8 @@ process behind the same client, over ASGI. Nothing else differs.
 from __future__ import annotations
 
 import importlib
-from collections.abc import AsyncIterator
-from contextlib import AsyncExitStack, asynccontextmanager
+from collections.abc import AsyncIterator, Iterator
+from contextlib import AsyncExitStack, asynccontextmanager, contextmanager
 from typing import Any
 
 import httpx
@@ -16,6 +16,8 @@ from fastapi import FastAPI
 
 from services.gateway.app import create_app as create_gateway
 from services.gateway.settings import STAGES, GatewaySettings
+from shared.client import Sparge
+from shared.service.local import READY_TIMEOUT_S, in_process
 
 
 def create_stage(name: str) -> FastAPI:
@@ -54,3 +56,16 @@ def create_app(settings: GatewaySettings | None = None) -> FastAPI:
 
     gateway.router.lifespan_context = lifespan
     return gateway
+
+
+@contextmanager
+def embedded(ready_timeout_s: float = READY_TIMEOUT_S) -> Iterator[Sparge]:
+    """Run the whole backend in this process, ready when this yields, and speak to it.
+
+    Raises
+    ------
+    StageUnavailable
+        A stage cannot start, or takes longer than `ready_timeout_s` seconds.
+    """
+    with in_process(create_app(), ready_timeout_s) as client:
+        yield Sparge(client.request)

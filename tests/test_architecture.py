@@ -16,7 +16,7 @@ SERVICES = (
     "gateway",
 )
 SHARED_LAYERS = (  # lowest first; a module may import its own layer and those before it
-    {"errors", "deadline", "geometry"},
+    {"errors", "deadline", "geometry", "output"},
     {"superquadric"},
     {"settings", "wire"},
     {"schemas"},

@@ -13,7 +13,7 @@ from experiments.dataset.choice import chosen_objects
 from experiments.dataset.drop import Body, body_of
 from experiments.dataset.manifest import NAME, check_same, encode, manifest_of, read_manifest
 from experiments.dataset.options import DatasetOptions
-from experiments.dataset.output import CLEAN, NOISY, claimed, write_whole
+from experiments.dataset.output import CLEAN, NOISY, claimed
 from experiments.dataset.photograph import photograph
 from experiments.dataset.processes import carry_out
 from experiments.dataset.randomness import generator
@@ -21,6 +21,7 @@ from experiments.dataset.reader import read_view
 from experiments.dataset.scene import draw_scene
 from experiments.dataset.view import LabelledView
 from shared.errors import InvalidInput
+from shared.output import write_whole
 from shared.wire.npz import write_npz
 
 Progress = Callable[[int, int], None]

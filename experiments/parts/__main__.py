@@ -11,11 +11,11 @@ from experiments.camera import StereoNoise
 from experiments.catalogue import CatalogueObject
 from experiments.dataset.drop import body_of
 from experiments.dataset.make import make_view
-from experiments.dataset.output import write_whole
 from experiments.dataset.randomness import generator
 from experiments.dataset.view import LabelledView
 from experiments.parts.lessons import lessons, noise_level
 from shared.errors import InvalidInput
+from shared.output import write_whole
 from shared.wire.npz import write_npz
 
 

@@ -17,7 +17,6 @@ from rich.console import Console
 
 from experiments.catalogue import CLASSES, CatalogueObject
 from experiments.dataset.drop import body_of
-from experiments.dataset.output import write_whole
 from experiments.dataset.processes import carry_out
 from experiments.framework.knowledge import added_tasks, affordances, name_prefix
 from experiments.grasps.blind import blind_tasks
@@ -25,6 +24,7 @@ from experiments.trials.scenes import draw_object, draw_scene
 from experiments.trials.trials import Judge, try_out
 from shared.client import Sparge, connect
 from shared.errors import InvalidInput, StageUnavailable
+from shared.output import write_whole
 from shared.schemas.execution import EXECUTE
 from shared.schemas.grasp import LIST_GRIPPERS
 from shared.schemas.route import Nothing

@@ -16,7 +16,6 @@ from rich.progress import Progress, SpinnerColumn, TextColumn, TimeElapsedColumn
 from shared.client import GraspResult, Sparge, connect
 from shared.geometry.points import points_from_depth
 from shared.schemas.scene import View
-from shared.service.local import in_process
 from shared.wire.codec import validate
 from shared.wire.files import read_cloud_file
 
@@ -82,10 +81,10 @@ def backend(url: str | None) -> Iterator[Sparge]:
         with connect(url) as sparge:
             yield sparge
         return
-    from services.wiring import create_app
+    from services.wiring import embedded
 
-    with in_process(create_app()) as client:
-        yield Sparge(client.request)
+    with embedded() as sparge:
+        yield sparge
 
 
 def _points(question: Question, data: bytes) -> Array:

@@ -1,19 +1,19 @@
-"""`sparge grasp`, `sparge serve`, and the measuring stick: `dataset` and `experiment`."""
+"""`sparge grasp`, `annotate`, `serve`, and the measuring stick: `dataset` and `experiment`."""
 
 from __future__ import annotations
 
 import sys
-from enum import StrEnum
 from pathlib import Path
 from typing import Annotated
 
-import orjson
 import typer
 from rich.console import Console
 
+from services.cli.annotate import annotate
 from services.cli.dataset import dataset
 from services.cli.experiment import experiment
 from services.cli.key import key_commands
+from services.cli.options import Input, Reasoning, json_option
 from services.cli.rule import rule_commands
 from services.cli.task import task_commands
 from shared.errors import SpargeError
@@ -25,25 +25,12 @@ app = typer.Typer(
 )
 
 
+app.command()(annotate)
 app.command()(dataset)
 app.command()(experiment)
 app.add_typer(task_commands, name="task")
 app.add_typer(rule_commands, name="rule")
 app.add_typer(key_commands, name="key")
-
-
-class Reasoning(StrEnum):
-    """Which version of the reasoning decides."""
-
-    v1 = "v1"
-    v2 = "v2"
-
-
-class Input(StrEnum):
-    """What the points show."""
-
-    scene = "scene"
-    object = "object"
 
 
 def main() -> None:
@@ -95,8 +82,8 @@ def grasp(
             "gripper": gripper,
             "max_grasps": max_grasps,
             "seed": seed,
-            "viewpoint": _json("viewpoint", viewpoint),
-            "intrinsics": _json("intrinsics", intrinsics),
+            "viewpoint": json_option("viewpoint", viewpoint),
+            "intrinsics": json_option("intrinsics", intrinsics),
             "depth_scale": depth_scale,
         },
     )
@@ -153,13 +140,3 @@ def serve(
         log_level=log_level,
         timeout_graceful_shutdown=5,
     )
-
-
-def _json(name: str, text: str | None) -> object:
-    """Return what an option written as JSON says."""
-    try:
-        return None if text is None else orjson.loads(text)
-    except orjson.JSONDecodeError:
-        raise typer.BadParameter(
-            f"--{name} must be JSON, as in [0, 0, 0]; found {text!r}"
-        ) from None
