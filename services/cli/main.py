@@ -2,6 +2,7 @@
 
 from __future__ import annotations
 
+import os
 import sys
 from enum import StrEnum
 from pathlib import Path
@@ -42,6 +43,15 @@ class Input(StrEnum):
 
     scene = "scene"
     object = "object"
+
+
+class LogLevel(StrEnum):
+    """The least that is logged."""
+
+    debug = "debug"
+    info = "info"
+    warning = "warning"
+    error = "error"
 
 
 def main() -> None:
@@ -125,17 +135,20 @@ def grasp(
 def serve(
     host: Annotated[str, typer.Option(help="Address to listen on")] = "127.0.0.1",
     port: Annotated[int, typer.Option(min=0, max=65535)] = 8000,
-    log_level: Annotated[str, typer.Option(help="debug, info, warning or error")] = "info",
+    log_level: Annotated[
+        LogLevel | None, typer.Option(help="Instead of SPARGE_LOG_LEVEL; info without both")
+    ] = None,
 ) -> None:
     """Serve the backend; stages without a URL in the environment run in this process."""
     import uvicorn
 
+    if log_level is not None:
+        os.environ["SPARGE_LOG_LEVEL"] = log_level.value
     uvicorn.run(
         "services.wiring:create_app",
         factory=True,
         host=host,
         port=port,
-        log_level=log_level,
         timeout_graceful_shutdown=5,
     )
 

@@ -2,6 +2,7 @@
 
 from __future__ import annotations
 
+import logging
 import os
 import subprocess
 import sys
@@ -17,6 +18,8 @@ from shared.schemas.gripper import ParallelGripper, SuctionGripper
 from shared.wire import NPZ, decode, encode
 
 START_LIMIT_S = 60.0
+
+log = logging.getLogger("sparge.execution")
 
 
 class Simulator:
@@ -95,6 +98,8 @@ class Simulator:
         if answer.startswith(ANSWER):
             return decode(ExecuteResponse, answer[1:], NPZ, max_unpacked_bytes=sys.maxsize)
         failure = orjson.loads(answer[1:])
+        if failure["traceback"]:
+            log.error("the simulation failed: %s", failure["traceback"])
         raise error_from_envelope(failure["status"], failure) or InternalError("no envelope")
 
     def stop(self) -> None:

@@ -11,6 +11,7 @@ from typing import Any
 import httpx
 from fastapi import FastAPI, Request
 from fastapi.responses import Response
+from opentelemetry import trace
 from starlette.concurrency import run_in_threadpool
 from starlette.datastructures import UploadFile
 
@@ -19,6 +20,7 @@ from services.gateway import request as requests
 from services.gateway.knowledge import DOCUMENTED as KNOWLEDGE_ROUTES
 from services.gateway.knowledge import serve_knowledge
 from services.gateway.memory import Memory
+from services.gateway.metrics import GraspMetrics
 from services.gateway.openapi import describe_grasp, describe_knowledge
 from services.gateway.pipeline import Pipeline
 from services.gateway.settings import STAGES, GatewaySettings
@@ -43,6 +45,7 @@ from shared.service.app import Health, create_base
 from shared.service.openapi import describe
 from shared.service.request_id import request_id
 from shared.service.serve import serve
+from shared.service.server_timing import SERVER_TIMING, server_timing
 from shared.wire import JSON, NPZ
 
 FORM = "multipart/form-data"
@@ -85,8 +88,6 @@ def create_app(
     """
     settings = settings or GatewaySettings()
     clients = _connect(settings, transports or {})
-    stages = {name: StageClient(name, http) for name, http in clients.items()}
-    pipeline = Pipeline(stages, settings)
     memory = Memory(settings.kept_explanations, settings.keep_explanations_s)
 
     @asynccontextmanager
@@ -120,12 +121,18 @@ def create_app(
         lifespan=lifespan,
         ready=ready,
     )
+    stages = {name: StageClient(name, http, app.state.tracer) for name, http in clients.items()}
+    metrics = GraspMetrics(app.state.metrics.registry)
+    pipeline = Pipeline(stages, settings, metrics)
 
     @app.post("/grasp", operation_id="post_grasp", response_class=Response)
     async def grasp(request: Request) -> Response:
         started = time.perf_counter()
         parsed = await _parse(request, settings)
         parsing_ms = 1e3 * (time.perf_counter() - started)
+        span = trace.get_current_span()
+        span.set_attribute("sparge.task", parsed.parameters.task)
+        span.set_attribute("sparge.reasoning", parsed.parameters.reasoning)
         outcome = await pipeline.run(parsed)
         timings_ms = {
             "parsing": parsing_ms,
@@ -134,10 +141,13 @@ def create_app(
         }
         composed = answer.compose(outcome, parsed, settings, request_id.get(), timings_ms)
         memory.keep(composed)
+        metrics.answered(composed)
+        span.set_attribute("sparge.found", composed.found)
+        headers = {SERVER_TIMING: server_timing(timings_ms)}
         if NPZ in request.headers.get("accept", JSON):
             body = await run_in_threadpool(answer.to_npz, composed, outcome)
-            return Response(body, media_type=NPZ)
-        return Response(composed.model_dump_json(), media_type=JSON)
+            return Response(body, media_type=NPZ, headers=headers)
+        return Response(composed.model_dump_json(), media_type=JSON, headers=headers)
 
     async def explanation(asked: RequestName) -> KeptExplanation:
         return memory.recall(asked.request_id)

@@ -13,9 +13,10 @@ from dataclasses import dataclass, field
 
 import numpy as np
 
+from services.gateway.metrics import GraspMetrics
 from services.gateway.request import GraspRequest
 from services.gateway.settings import GatewaySettings
-from shared.errors import DeadlineExceeded, UnknownGripper
+from shared.errors import DeadlineExceeded, SpargeError, UnknownGripper
 from shared.schemas.grasp import (
     FIND_REGION,
     LIST_GRIPPERS,
@@ -60,6 +61,7 @@ class _Run:
     """One request under way: its clock and what each stage took."""
 
     stages: Mapping[str, StageClient]
+    metrics: GraspMetrics
     deadline: float
     timings_ms: dict[str, float] = field(default_factory=dict)
     gripper_opening: float | None = None
@@ -71,22 +73,29 @@ class _Run:
         name = timed_as or route.service
         started = time.perf_counter()
         left = self.deadline - started
-        if left <= 0:
-            raise DeadlineExceeded(
-                f"no time was left for the stage {route.service}", stage=route.service
-            )
-        response = await self.stages[route.service].call(route, request, left)
-        spent = 1e3 * (time.perf_counter() - started)
-        self.timings_ms[name] = self.timings_ms.get(name, 0.0) + spent
-        return response
+        try:
+            if left <= 0:
+                raise DeadlineExceeded(
+                    f"no time was left for the stage {route.service}", stage=route.service
+                )
+            return await self.stages[route.service].call(route, request, left)
+        except SpargeError as error:
+            self.metrics.failed(route.service, error.code)
+            raise
+        finally:
+            spent = 1e3 * (time.perf_counter() - started)
+            self.timings_ms[name] = self.timings_ms.get(name, 0.0) + spent
 
 
 class Pipeline:
     """Runs the chain over typed clients, wherever the stages live."""
 
-    def __init__(self, stages: Mapping[str, StageClient], settings: GatewaySettings) -> None:
+    def __init__(
+        self, stages: Mapping[str, StageClient], settings: GatewaySettings, metrics: GraspMetrics
+    ) -> None:
         self._stages = stages
         self._settings = settings
+        self._metrics = metrics
 
     async def run(self, request: GraspRequest) -> Outcome:
         """Return what every stage found.
@@ -96,7 +105,14 @@ class Pipeline:
         SpargeError
             The error of the stage that refused, or of the chain itself.
         """
-        run = _Run(self._stages, time.perf_counter() + self._settings.deadline_s)
+        deadline = time.perf_counter() + self._settings.deadline_s
+        run = _Run(self._stages, self._metrics, deadline)
+        try:
+            return await self._chain(run, request)
+        finally:
+            self._metrics.spent(run.timings_ms)
+
+    async def _chain(self, run: _Run, request: GraspRequest) -> Outcome:
         scene = await self._perceive(run, request)
         recovered = await self._recover(run, request, scene)
         decision = await self._decide(run, request, scene, recovered)
