@@ -141,7 +141,7 @@ def create_app(
         }
         composed = answer.compose(outcome, parsed, settings, request_id.get(), timings_ms)
         memory.keep(composed)
-        metrics.answered(composed)
+        metrics.answered(composed.reasoning, composed.found, composed.reason, len(composed.grasps))
         span.set_attribute("sparge.found", composed.found)
         headers = {SERVER_TIMING: server_timing(timings_ms)}
         if NPZ in request.headers.get("accept", JSON):

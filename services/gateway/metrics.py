@@ -6,7 +6,7 @@ from collections.abc import Mapping
 
 from prometheus_client import CollectorRegistry, Counter, Histogram
 
-from shared.schemas.answer import GraspAnswer
+from shared.schemas.task import Reason, Version
 
 REASONS = frozenset(
     {
@@ -75,10 +75,10 @@ class GraspMetrics:
         """Count a call of a stage that ended in an error."""
         self._failures.labels(stage, code).inc()
 
-    def answered(self, answer: GraspAnswer) -> None:
-        """Count one answer."""
-        code = answer.reason.code if answer.reason else ""
-        reason = code if code in REASONS or not code else "other"
-        self._answers.labels(answer.reasoning, str(answer.found).lower(), reason).inc()
-        if answer.found:
-            self._grasps.labels(answer.reasoning).observe(len(answer.grasps))
+    def answered(self, reasoning: Version, found: bool, reason: Reason | None, grasps: int) -> None:
+        """Count one answer and its grasps."""
+        code = reason.code if reason else ""
+        known = code if code in REASONS or not code else "other"
+        self._answers.labels(reasoning, str(found).lower(), known).inc()
+        if found:
+            self._grasps.labels(reasoning).observe(grasps)

@@ -2,7 +2,6 @@
 
 from __future__ import annotations
 
-import dataclasses
 import json
 import logging
 import os
@@ -141,9 +140,8 @@ def test_a_wrong_setting_is_refused(monkeypatch: pytest.MonkeyPatch) -> None:
 
 
 def test_what_machines_poll_and_mere_steps_are_quiet(caplog: pytest.LogCaptureFixture) -> None:
-    def line(**changes: str) -> Exchange:
-        asked = Exchange("GET", "/tasks", 200, 0.1, 0, 10, "127.0.0.1", None)
-        return dataclasses.replace(asked, **changes)
+    def line(route: str = "/tasks", client: str = "127.0.0.1") -> Exchange:
+        return Exchange("GET", route, 200, 0.1, 0, 10, client, None)
 
     with caplog.at_level(logging.DEBUG, "sparge"):
         for each in (line(), line(route="/health/ready"), line(client=IN_PROCESS[0])):

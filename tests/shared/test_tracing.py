@@ -17,7 +17,7 @@ from shared.errors import DeadlineExceeded
 from shared.schemas.grasp import SELECT, SelectRequest, SelectResponse
 from shared.service import StageClient, bind, create_service, tracing
 from shared.settings import ServiceSettings
-from tests.support.collector import CLIENT, SERVER, Collector, Span, collecting
+from tests.support.collector import CLIENT, SERVER, Collector, Span, traced
 from tests.support.serving import in_process, over_socket, serving
 
 REQUEST = SelectRequest(
@@ -28,15 +28,9 @@ ROBOT_SPAN = "b7ad6b7169203331"
 
 
 @pytest.fixture
-def collector(monkeypatch: pytest.MonkeyPatch) -> Iterator[Collector]:
-    with collecting() as running:
-        monkeypatch.setenv("OTEL_EXPORTER_OTLP_ENDPOINT", running.url)
-        tracing._processor.cache_clear()
+def collector() -> Iterator[Collector]:
+    with traced() as running:
         yield running
-        processor = tracing._processor()
-        assert processor is not None
-        processor.shutdown()
-        tracing._processor.cache_clear()
 
 
 def stage() -> FastAPI:

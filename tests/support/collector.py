@@ -9,7 +9,10 @@ from dataclasses import dataclass, field
 from http.server import BaseHTTPRequestHandler, ThreadingHTTPServer
 from typing import Any
 
+import pytest
 from opentelemetry.proto.collector.trace.v1.trace_service_pb2 import ExportTraceServiceRequest
+
+from shared.service import tracing
 
 
 @dataclass(frozen=True)
@@ -53,6 +56,20 @@ class Collector:
                     )
                     for each in scope.spans
                 ]
+
+
+@contextlib.contextmanager
+def traced() -> Iterator[Collector]:
+    """Configure traces in this process, and give the collector that they are sent to."""
+    with pytest.MonkeyPatch.context() as environment, collecting() as collector:
+        environment.setenv("OTEL_EXPORTER_OTLP_ENDPOINT", collector.url)
+        tracing._processor.cache_clear()
+        try:
+            yield collector
+        finally:
+            if (processor := tracing._processor()) is not None:
+                processor.shutdown()  # type: ignore[no-untyped-call]  # of the SDK
+            tracing._processor.cache_clear()
 
 
 @contextlib.contextmanager
