@@ -63,6 +63,7 @@ def traced() -> Iterator[Collector]:
     """Configure traces in this process, and give the collector that they are sent to."""
     with pytest.MonkeyPatch.context() as environment, collecting() as collector:
         environment.setenv("OTEL_EXPORTER_OTLP_ENDPOINT", collector.url)
+        environment.setattr(tracing, "_serving", 0)  # the backend of other tests may still run
         tracing._processor.cache_clear()
         try:
             yield collector
