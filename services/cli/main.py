@@ -1,4 +1,4 @@
-"""`sparge grasp`, `sparge serve`, and the measuring stick: `dataset` and `experiment`."""
+"""`sparge grasp`, `serve` and `doctor`, and the measuring stick: `dataset` and `experiment`."""
 
 from __future__ import annotations
 
@@ -13,6 +13,7 @@ import typer
 from rich.console import Console
 
 from services.cli.dataset import dataset
+from services.cli.doctor.command import doctor
 from services.cli.experiment import experiment
 from services.cli.rule import rule_commands
 from services.cli.task import task_commands
@@ -27,6 +28,7 @@ app = typer.Typer(
 
 app.command()(dataset)
 app.command()(experiment)
+app.command()(doctor)
 app.add_typer(task_commands, name="task")
 app.add_typer(rule_commands, name="rule")
 
