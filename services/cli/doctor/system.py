@@ -30,11 +30,11 @@ _USEFUL = {
 }
 
 
-def python() -> Iterator[Finding]:
+def python(version: tuple[int, ...] = sys.version_info[:3]) -> Iterator[Finding]:
     """Check the interpreter's version."""
-    first, beyond = (".".join(map(str, version)) for version in PYTHON)
-    found = ".".join(map(str, sys.version_info[:3]))
-    if PYTHON[0] <= sys.version_info[:2] < PYTHON[1]:
+    first, beyond = (".".join(map(str, each)) for each in PYTHON)
+    found = ".".join(map(str, version))
+    if PYTHON[0] <= version < PYTHON[1]:
         yield Finding("python", Status.ok, f"{found} at {sys.executable}")
         return
     advice = f"use Python {first} or later, below {beyond}; `make setup` finds one"
@@ -85,15 +85,15 @@ def disk() -> Iterator[Finding]:
         yield Finding("disk", Status.warn, message, "make room for kernels and knowledge")
 
 
-def clock() -> Iterator[Finding]:
-    """Check that it is not earlier than the installation itself."""
-    installed = Path(__file__).stat().st_mtime
-    now = time.strftime("%Y-%m-%d %H:%M:%S UTC", time.gmtime())
-    if time.time() >= installed:
-        yield Finding("clock", Status.ok, now)
+def clock(now: float | None = None) -> Iterator[Finding]:
+    """Check that it is not earlier than the installation itself; seconds since 1970."""
+    now = time.time() if now is None else now
+    shown = time.strftime("%Y-%m-%d %H:%M:%S UTC", time.gmtime(now))
+    if now >= Path(__file__).stat().st_mtime:
+        yield Finding("clock", Status.ok, shown)
     else:
         advice = "set it (NTP): logs, traces and certificates go by it"
-        yield Finding("clock", Status.fail, f"{now} is before this was installed", advice)
+        yield Finding("clock", Status.fail, f"{shown} is before this was installed", advice)
 
 
 def port(host: str, number: int) -> Iterator[Finding]:
