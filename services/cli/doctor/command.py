@@ -105,6 +105,5 @@ def _checks(host: str, port: int) -> Iterator[Finding]:
         if worst(works) is Status.ok:
             yield from probe("reasoning")
     yield from probe("models", *here)
-    yield from probe("kernels", *here)
     for name, stage_url in urls.items():
         yield from remote.service(name, stage_url, f"SPARGE_GATEWAY_{name.upper()}_URL")

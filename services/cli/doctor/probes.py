@@ -11,7 +11,7 @@ import importlib
 import os
 import sys
 import time
-from collections.abc import Callable
+from collections.abc import Callable, Collection
 from dataclasses import asdict
 from importlib.metadata import PackageNotFoundError, version
 from pathlib import Path
@@ -24,6 +24,14 @@ from services.cli.doctor.packages import EXTRAS
 from shared.errors import SpargeError
 
 SWI_PROLOG = "on Debian: apt-get install swi-prolog-nox; then reinstall pyswip if it persists"
+
+
+_WITH_KERNELS = {
+    "perception": ("perceive",),
+    "primitive_recovery": ("recovery", "ems.hierarchy", "ems.overlap"),
+    "grasp_proposal": ("proposer",),
+}
+"""The modules of each stage whose import brings all of its kernels."""
 
 
 class Report:
@@ -145,17 +153,13 @@ def models(report: Report, *stages: str) -> None:
             return _sums(GRASPS)
 
         report.step("grasp scorer", scorer, advice)
+    if compiled := _WITH_KERNELS.keys() & stages:
+        _kernels(report, sorted(compiled))
 
 
-def kernels(report: Report, *stages: str) -> None:
-    """Look for the machine code of the kernels."""
-    modules = {
-        "perception": ("perceive",),
-        "primitive_recovery": ("recovery", "ems.hierarchy", "ems.overlap"),
-        "grasp_proposal": ("proposer",),
-    }
+def _kernels(report: Report, stages: Collection[str]) -> None:
     for stage in stages:
-        for name in modules.get(stage, ()):
+        for name in _WITH_KERNELS[stage]:
             importlib.import_module(f"services.{stage}.{name}")
     from shared.jit import kernels_on_disk
 
@@ -194,7 +198,7 @@ def _sums(*files: Path) -> str:
     )
 
 
-PROBES = {each.__name__: each for each in (packages, pyswip, reasoning, models, kernels, question)}
+PROBES = {each.__name__: each for each in (packages, pyswip, reasoning, models, question)}
 
 if __name__ == "__main__":
     PROBES[sys.argv[1]](Report(), *sys.argv[2:])

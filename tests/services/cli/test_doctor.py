@@ -81,20 +81,19 @@ def test_everything_that_is_broken_is_told_at_once(tmp_path: Path) -> None:
                 "SPARGE_REASONING_KNOWLEDGE_DIR": str(blocked / "knowledge"),
                 "SPARGE_REASONING_RULES_DIR": str(tmp_path / "no rules"),
                 "SPARGE_GATEWAY_DEADLINE": "3",
-                "SPARGE_GATEWAY_EXECUTION_URL": f"http://127.0.0.1:{nobody}",
+                **{
+                    f"SPARGE_GATEWAY_{each.upper()}_URL": f"http://127.0.0.1:{nobody}"
+                    for each in STAGES
+                    if each != "reasoning"
+                },
             },
             *("--json", "--port", str(taken.getsockname()[1])),
         )
     assert (code, report["status"]) == (1, "fail")
     broken = {each["check"]: each for each in report["findings"] if each["status"] == "fail"}
     assert all(each["advice"] for each in broken.values())
-    assert set(broken) >= {
-        "configuration",
-        "port",
-        "swi-prolog",
-        "knowledge folder",
-        "execution",
-    }
+    asked = {each for each in STAGES if each != "reasoning"}
+    assert set(broken) >= {"configuration", "port", "swi-prolog", "knowledge folder", *asked}
     assert {"pyswip", "rules"} & set(broken), "without swipl pyswip may find its library, or not"
     assert broken["configuration"]["advice"] == "meant is SPARGE_GATEWAY_DEADLINE_S?"
     assert report["findings"][-1]["status"] == "skip", "no question is asked"
