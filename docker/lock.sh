@@ -12,9 +12,9 @@ compile() {
         --allow-unsafe --strip-extras --no-emit-index-url --no-emit-find-links \
         --no-emit-trusted-host --output-file="$output" "$@" pyproject.toml
 }
-extras=$(for each in $services cli experiments dev; do printf ' --extra %s' "$each"; done)
+extras=$(for each in $services tracing cli experiments dev; do printf ' --extra %s' "$each"; done)
 compile requirements.lock $extras
 compile requirements-training.lock $extras --extra train --constraint requirements.lock
 for each in $services; do
-    compile "docker/locks/$each.txt" --extra "$each" --constraint requirements.lock
+    compile "docker/locks/$each.txt" --extra "$each" --extra tracing --constraint requirements.lock
 done

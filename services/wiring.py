@@ -17,6 +17,7 @@ from fastapi import FastAPI
 from services.gateway.app import create_app as create_gateway
 from services.gateway.settings import STAGES, GatewaySettings
 from shared.client import Sparge
+from shared.service.exchange import IN_PROCESS
 from shared.service.local import READY_TIMEOUT_S, in_process
 
 
@@ -40,10 +41,12 @@ def create_app(settings: GatewaySettings | None = None) -> FastAPI:
     gateway = create_gateway(
         settings,
         {
-            name: httpx.ASGITransport(app=app, raise_app_exceptions=False)
+            name: httpx.ASGITransport(app=app, raise_app_exceptions=False, client=IN_PROCESS)
             for name, app in embedded.items()
         },
     )
+    for stage in embedded.values():
+        gateway.state.metrics.join(stage.state.metrics)
     alone = gateway.router.lifespan_context
 
     @asynccontextmanager

@@ -24,6 +24,7 @@ from numpy.typing import ArrayLike, NDArray
 from shared.schemas.answer import GraspAnswer
 from shared.schemas.route import Request, Response, Route
 from shared.service.client import MAX_ANSWER_BYTES, check, compose, read, unavailable
+from shared.service.tracing import inject
 from shared.wire import NPZ, Message
 from shared.wire.npz import read_npz, write_npz
 
@@ -106,7 +107,10 @@ class Sparge:
 
     def _grasp(self, headers: Mapping[str, str] | None = None, **options: Any) -> GraspResult:
         response = self._request(
-            method="POST", url="/grasp", headers={"Accept": NPZ, **(headers or {})}, **options
+            method="POST",
+            url="/grasp",
+            headers=inject({"Accept": NPZ, **(headers or {})}),
+            **options,
         )
         check(BACKEND, response)
         arrays = read_npz(response.content, MAX_ANSWER_BYTES)

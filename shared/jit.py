@@ -6,6 +6,7 @@ Only services whose group in pyproject.toml names numba may import this.
 from __future__ import annotations
 
 from collections.abc import Callable
+from pathlib import Path
 from typing import Any, TypeVar
 
 import numba
@@ -48,6 +49,21 @@ def types_compiled() -> dict[str, int]:
         f"{each.py_func.__module__}.{each.py_func.__name__}": len(each.signatures)
         for each in _kernels
     }
+
+
+def kernels_on_disk() -> dict[str, bool | None]:
+    """Return whether each kernel so far is cached on disk; None where no disk can be written.
+
+    What is cached may be of another processor; it is then compiled once more.
+    """
+    found: dict[str, bool | None] = {}
+    for each in _kernels:
+        function, folder = each.py_func, each.stats.cache_path
+        pattern = f"*.{function.__qualname__}-{function.__code__.co_firstlineno}.*.nbi"
+        found[f"{function.__module__}.{function.__name__}"] = (
+            None if folder is None else any(Path(folder).glob(pattern))
+        )
+    return found
 
 
 def read_only(array: NDArray[np.generic]) -> Array:

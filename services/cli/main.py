@@ -1,8 +1,10 @@
-"""`sparge grasp`, `annotate`, `serve`, and the measuring stick: `dataset` and `experiment`."""
+"""`sparge grasp`, `annotate`, `serve`, `doctor`, and the measuring stick: `dataset`, `experiment`."""
 
 from __future__ import annotations
 
+import os
 import sys
+from enum import StrEnum
 from pathlib import Path
 from typing import Annotated
 
@@ -11,6 +13,7 @@ from rich.console import Console
 
 from services.cli.annotate import annotate
 from services.cli.dataset import dataset
+from services.cli.doctor.command import doctor
 from services.cli.experiment import experiment
 from services.cli.key import key_commands
 from services.cli.options import Input, Reasoning, json_option
@@ -28,9 +31,19 @@ app = typer.Typer(
 app.command()(annotate)
 app.command()(dataset)
 app.command()(experiment)
+app.command()(doctor)
 app.add_typer(task_commands, name="task")
 app.add_typer(rule_commands, name="rule")
 app.add_typer(key_commands, name="key")
+
+
+class LogLevel(StrEnum):
+    """The least that is logged."""
+
+    debug = "debug"
+    info = "info"
+    warning = "warning"
+    error = "error"
 
 
 def main() -> None:
@@ -114,7 +127,9 @@ def grasp(
 def serve(
     host: Annotated[str, typer.Option(help="Address to listen on")] = "127.0.0.1",
     port: Annotated[int, typer.Option(min=0, max=65535)] = 8000,
-    log_level: Annotated[str, typer.Option(help="debug, info, warning or error")] = "info",
+    log_level: Annotated[
+        LogLevel | None, typer.Option(help="Instead of SPARGE_LOG_LEVEL; info without both")
+    ] = None,
     insecure: Annotated[
         bool, typer.Option("--insecure", help="Answer other machines without API keys")
     ] = False,
@@ -129,6 +144,8 @@ def serve(
     from services.gateway.settings import GatewaySettings
     from services.wiring import create_app
 
+    if log_level is not None:
+        os.environ["SPARGE_LOG_LEVEL"] = log_level.value
     settings = GatewaySettings()
     if insecure:
         settings = settings.model_copy(update={"insecure": True})
@@ -137,6 +154,5 @@ def serve(
         create_app(settings),
         host=host,
         port=port,
-        log_level=log_level,
         timeout_graceful_shutdown=5,
     )

@@ -7,10 +7,10 @@ standard output from C; this process discards it.
 
 from __future__ import annotations
 
-import logging
 import os
 import signal
 import sys
+import traceback
 from multiprocessing.connection import Connection
 
 import orjson
@@ -27,8 +27,6 @@ GRACE_S = 2
 """The alarm that ends a stuck simulation rings this much after the parent's own limit."""
 
 GRIPPER: TypeAdapter[ParallelGripper | SuctionGripper] = TypeAdapter(Gripper)
-
-log = logging.getLogger("sparge.execution")
 
 
 def main() -> None:
@@ -57,18 +55,20 @@ def main() -> None:
 
 
 def respond(gripper: bytes, request: bytes) -> bytes:
-    """Return the marked answer, or the marked error envelope; gripper in JSON, request in npz."""
+    """Return the marked answer, or the marked error envelope; gripper in JSON, request in npz.
+
+    The traceback of a fault of ours goes along: the parent has the log and the request's id.
+    """
     from services.execution.protocol import execute
 
     try:
         message = decode(ExecuteRequest, request, NPZ, max_unpacked_bytes=sys.maxsize)
         return ANSWER + encode(execute(message, GRIPPER.validate_json(gripper)), NPZ)
     except SpargeError as error:
-        failure = error
+        return FAILURE + _envelope(error)
     except Exception:
-        log.exception("the simulation failed")
         failure = InternalError("the simulation failed; the log of the service says why")
-    return FAILURE + _envelope(failure)
+        return FAILURE + _envelope(failure, traceback.format_exc())
 
 
 def _discard(descriptor: int) -> None:
@@ -78,8 +78,8 @@ def _discard(descriptor: int) -> None:
     os.close(nowhere)
 
 
-def _envelope(error: SpargeError) -> bytes:
-    return orjson.dumps({"status": error.status, **error.envelope("")})
+def _envelope(error: SpargeError, trace: str | None = None) -> bytes:
+    return orjson.dumps({"status": error.status, "traceback": trace, **error.envelope("")})
 
 
 if __name__ == "__main__":

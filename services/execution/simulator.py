@@ -2,6 +2,7 @@
 
 from __future__ import annotations
 
+import logging
 import os
 import subprocess
 import sys
@@ -17,6 +18,8 @@ from shared.schemas.gripper import ParallelGripper, SuctionGripper
 from shared.wire import NPZ, decode, encode
 
 START_LIMIT_S = 60.0
+
+log = logging.getLogger("sparge.execution")
 
 
 class Simulator:
@@ -92,13 +95,23 @@ class Simulator:
                 f"the simulation process died (exit status {self._process.returncode})",
                 stage="execution",
             ) from None
-        if answer.startswith(ANSWER):
-            return decode(ExecuteResponse, answer[1:], NPZ, max_unpacked_bytes=sys.maxsize)
-        failure = orjson.loads(answer[1:])
-        raise error_from_envelope(failure["status"], failure) or InternalError("no envelope")
+        return read_answer(answer)
 
     def stop(self) -> None:
         """End the process, whatever it is doing."""
         self._pipe.close()
         self._process.kill()
         self._process.wait()
+
+
+def read_answer(answer: bytes) -> ExecuteResponse:
+    """Return what the process answered, or raise the error that it is.
+
+    The traceback of a fault goes to the log, where the request's id is known.
+    """
+    if answer.startswith(ANSWER):
+        return decode(ExecuteResponse, answer[1:], NPZ, max_unpacked_bytes=sys.maxsize)
+    failure = orjson.loads(answer[1:])
+    if failure["traceback"]:
+        log.error("the simulation failed: %s", failure["traceback"])
+    raise error_from_envelope(failure["status"], failure) or InternalError("no envelope")

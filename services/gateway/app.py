@@ -11,6 +11,7 @@ from typing import Any
 import httpx
 from fastapi import FastAPI, Request
 from fastapi.responses import Response
+from opentelemetry import trace
 from starlette.concurrency import run_in_threadpool
 from starlette.datastructures import UploadFile
 from starlette.middleware.cors import CORSMiddleware
@@ -21,6 +22,7 @@ from services.gateway.access import Access
 from services.gateway.knowledge import DOCUMENTED as KNOWLEDGE_ROUTES
 from services.gateway.knowledge import serve_knowledge
 from services.gateway.memory import Memory
+from services.gateway.metrics import GraspMetrics
 from services.gateway.openapi import describe_grasp, describe_knowledge
 from services.gateway.pipeline import Pipeline
 from services.gateway.settings import STAGES, GatewaySettings
@@ -49,6 +51,7 @@ from shared.service.openapi import describe
 from shared.service.request_id import request_id
 from shared.service.secret import secret_headers
 from shared.service.serve import serve
+from shared.service.server_timing import SERVER_TIMING, server_timing
 from shared.wire import JSON, NPZ
 
 LIMITS = httpx.Limits(max_connections=256, max_keepalive_connections=64, keepalive_expiry=3.0)
@@ -96,8 +99,6 @@ def create_app(
     """
     settings = settings or GatewaySettings()
     clients = _connect(settings, transports or {})
-    stages = {name: StageClient(name, http) for name, http in clients.items()}
-    pipeline = Pipeline(stages, settings)
     memory = Memory(settings.kept_explanations, settings.keep_explanations_s)
 
     @asynccontextmanager
@@ -132,6 +133,9 @@ def create_app(
         ready=ready,
         guard=Access(settings),
     )
+    stages = {name: StageClient(name, http, app.state.tracer) for name, http in clients.items()}
+    metrics = GraspMetrics(app.state.metrics.registry)
+    pipeline = Pipeline(stages, settings, metrics)
     if settings.cors_origins:
         app.add_middleware(
             CORSMiddleware,
@@ -154,6 +158,9 @@ def create_app(
         started = time.perf_counter()
         parsed = await _parse(request, settings)
         parsing_ms = 1e3 * (time.perf_counter() - started)
+        span = trace.get_current_span()
+        span.set_attribute("sparge.task", parsed.parameters.task)
+        span.set_attribute("sparge.reasoning", parsed.parameters.reasoning)
         outcome = await pipeline.run(parsed)
         timings_ms = {
             "parsing": parsing_ms,
@@ -162,10 +169,13 @@ def create_app(
         }
         composed = answer.compose(outcome, parsed, settings, request_id.get(), timings_ms)
         memory.keep(composed)
+        metrics.answered(composed.reasoning, composed.found, composed.reason, len(composed.grasps))
+        span.set_attribute("sparge.found", composed.found)
+        headers = {SERVER_TIMING: server_timing(timings_ms)}
         if NPZ in request.headers.get("accept", JSON):
             body = await run_in_threadpool(answer.to_npz, composed, outcome)
-            return Response(body, media_type=NPZ)
-        return Response(composed.model_dump_json(), media_type=JSON)
+            return Response(body, media_type=NPZ, headers=headers)
+        return Response(composed.model_dump_json(), media_type=JSON, headers=headers)
 
     async def explanation(asked: RequestName) -> KeptExplanation:
         return memory.recall(asked.request_id)

@@ -13,9 +13,10 @@ from dataclasses import dataclass, field
 
 import numpy as np
 
+from services.gateway.metrics import GraspMetrics
 from services.gateway.request import GraspRequest
 from services.gateway.settings import GatewaySettings
-from shared.errors import UnknownGripper
+from shared.errors import SpargeError, UnknownGripper
 from shared.schemas.grasp import (
     FIND_REGION,
     LIST_GRIPPERS,
@@ -60,6 +61,7 @@ class _Run:
     """One request under way: what each stage took."""
 
     stages: Mapping[str, StageClient]
+    metrics: GraspMetrics
     deadline_s: float
     timings_ms: dict[str, float] = field(default_factory=dict)
     gripper_opening: float | None = None
@@ -70,18 +72,25 @@ class _Run:
     ) -> Response:
         name = timed_as or route.service
         started = time.perf_counter()
-        response = await self.stages[route.service].call(route, request, self.deadline_s)
-        spent = 1e3 * (time.perf_counter() - started)
-        self.timings_ms[name] = self.timings_ms.get(name, 0.0) + spent
-        return response
+        try:
+            return await self.stages[route.service].call(route, request, self.deadline_s)
+        except SpargeError as error:
+            self.metrics.failed(route.service, error.code)
+            raise
+        finally:
+            spent = 1e3 * (time.perf_counter() - started)
+            self.timings_ms[name] = self.timings_ms.get(name, 0.0) + spent
 
 
 class Pipeline:
     """Runs the chain over typed clients, wherever the stages live."""
 
-    def __init__(self, stages: Mapping[str, StageClient], settings: GatewaySettings) -> None:
+    def __init__(
+        self, stages: Mapping[str, StageClient], settings: GatewaySettings, metrics: GraspMetrics
+    ) -> None:
         self._stages = stages
         self._settings = settings
+        self._metrics = metrics
 
     async def run(self, request: GraspRequest) -> Outcome:
         """Return what every stage found.
@@ -91,7 +100,13 @@ class Pipeline:
         SpargeError
             The error of the stage that refused, or of the chain itself.
         """
-        run = _Run(self._stages, self._settings.deadline_s)
+        run = _Run(self._stages, self._metrics, self._settings.deadline_s)
+        try:
+            return await self._chain(run, request)
+        finally:
+            self._metrics.spent(run.timings_ms)
+
+    async def _chain(self, run: _Run, request: GraspRequest) -> Outcome:
         scene = await self._perceive(run, request)
         recovered = await self._recover(run, request, scene)
         decision = await self._decide(run, request, scene, recovered)

@@ -8,14 +8,18 @@ from typing import Literal
 
 from fastapi import FastAPI
 from fastapi.responses import JSONResponse, Response
+from opentelemetry import trace
 from pydantic import BaseModel
 
 from shared import __version__
 from shared.service.admission import Admission
 from shared.service.context import Guard, RequestContext
 from shared.service.envelope import install_error_handlers
+from shared.service.exchange import Exchange
+from shared.service.logs import configure_logging, log_exchange
 from shared.service.memory import keep_freed_memory
 from shared.service.telemetry import Metrics
+from shared.service.tracing import exporting, telemetry, tracer_provider
 from shared.settings import ServiceSettings
 
 Lifespan = Callable[[FastAPI], AbstractAsyncContextManager[None]]
@@ -66,15 +70,29 @@ def create_base(
     @asynccontextmanager
     async def running(app: FastAPI) -> AsyncIterator[None]:
         keep_freed_memory()
-        async with lifespan(app):
+        async with exporting(), lifespan(app):
             yield
 
-    app = FastAPI(title=f"SPaRGE {name}", summary=summary, version=__version__, lifespan=running)
+    configure_logging()
+    provider = tracer_provider(name)
+    app = FastAPI(
+        title=f"SPaRGE {name}",
+        summary=summary,
+        version=__version__,
+        lifespan=running,
+        telemetry=telemetry(provider),
+    )
     metrics = Metrics(name)
     app.state.metrics = metrics
     app.state.admission = Admission(name, settings)
     metrics.watch(app.state.admission)
-    app.add_middleware(RequestContext, settings=settings, observe=metrics.observe, guard=guard)
+    app.state.tracer = trace.get_tracer("sparge", tracer_provider=provider)
+
+    def observe(exchange: Exchange) -> None:
+        metrics.observe(exchange)
+        log_exchange(name, exchange)
+
+    app.add_middleware(RequestContext, settings=settings, observe=observe, guard=guard)
     install_error_handlers(app)
 
     @app.get("/health/live", tags=["operations"], summary="The process answers")

@@ -12,6 +12,7 @@ from typing import Any, TypeVar
 
 import httpx
 import orjson
+from opentelemetry import trace
 
 from shared.deadline import DEADLINE_HEADER, remaining_s
 from shared.errors import (
@@ -26,6 +27,7 @@ from shared.errors import (
 from shared.schemas.route import Route
 from shared.service.app import Health
 from shared.service.request_id import REQUEST_ID_HEADER, request_id
+from shared.service.tracing import answered, calling, inject
 from shared.wire import NPZ, Message, decode, encode
 
 In = TypeVar("In", bound=Message)
@@ -43,11 +45,16 @@ class StageClient:
         Its name, for messages.
     http : httpx.AsyncClient
         With the base URL and the transport; closed by whoever made it.
+    tracer : Tracer, optional
+        Makes a span of each call; without it, the one of the process if there is one.
     """
 
-    def __init__(self, service: str, http: httpx.AsyncClient) -> None:
+    def __init__(
+        self, service: str, http: httpx.AsyncClient, tracer: trace.Tracer | None = None
+    ) -> None:
         self.service = service
         self._http = http
+        self._tracer = tracer or trace.get_tracer("sparge")
 
     async def call(self, route: Route[In, Out], request: In, timeout_s: float) -> Out:
         """Send `request`, return the answer; the stage is told how much time there is.
@@ -70,8 +77,10 @@ class StageClient:
         asked = compose(route, request)
         asked["headers"][DEADLINE_HEADER] = f"{left_s:.3f}"
         try:
-            async with asyncio.timeout(left_s):
-                response = await self._http.request(**asked)
+            with calling(self._tracer, route, self._http.base_url) as span:
+                async with asyncio.timeout(left_s):
+                    response = await self._http.request(**asked)
+                answered(span, response)
         except (TimeoutError, httpx.TimeoutException):
             raise DeadlineExceeded(
                 f"the stage {self.service} did not answer in time", stage=self.service
@@ -99,7 +108,7 @@ def compose(route: Route[In, Out], request: In) -> dict[str, Any]:
     path = route.path
     for name in type(request).model_fields:
         path = path.replace(f"{{{name}}}", str(getattr(request, name)))
-    headers = {"Accept": NPZ, REQUEST_ID_HEADER: request_id.get()}
+    headers = inject({"Accept": NPZ, REQUEST_ID_HEADER: request_id.get()})
     if route.method != "POST":
         fields = request.model_dump(mode="json", exclude_none=True)
         params = {name: text for name, text in fields.items() if f"{{{name}}}" not in route.path}

@@ -15,6 +15,7 @@ import time
 import uuid
 from collections.abc import Callable
 
+from opentelemetry import trace
 from starlette.datastructures import Headers, MutableHeaders
 from starlette.types import ASGIApp, Message, Receive, Scope, Send
 
@@ -27,13 +28,16 @@ from shared.errors import (
     SpargeError,
 )
 from shared.service.envelope import error_response
+from shared.service.exchange import ERROR_CODE, Exchange, exchange
 from shared.service.request_id import REQUEST_ID_HEADER, request_id
+from shared.service.server_timing import SERVER_TIMING, server_timing
 from shared.settings import ServiceSettings
 
 _VALID_ID = re.compile(r"[A-Za-z0-9._-]{1,64}")
 _DRAIN_FACTOR, _DRAIN_SECONDS = 8, 10.0
+_NOTHING_SENT = 499  # as nginx counts a client that closed the request
 
-Observe = Callable[[Scope, int, float], None]
+Observe = Callable[[Exchange], None]
 Guard = Callable[[Scope], None]
 """Raises the error of a request that may not pass."""
 
@@ -59,18 +63,24 @@ class RequestContext:
         given = headers.get(REQUEST_ID_HEADER, "")
         identifier = given if _VALID_ID.fullmatch(given) else uuid.uuid4().hex
         token = request_id.set(identifier)
-        started, status, answering = time.perf_counter(), 500, False
+        trace.get_current_span().set_attribute("sparge.request_id", identifier)
+        started, status, answering, bytes_out = time.perf_counter(), _NOTHING_SENT, False, 0
+        limited = _Limited(receive, headers, self._settings)
 
         async def send_with_id(message: Message) -> None:
-            nonlocal status, answering
+            nonlocal status, answering, bytes_out
             if message["type"] == "http.response.start":
                 status, answering = message["status"], True
-                MutableHeaders(scope=message)[REQUEST_ID_HEADER] = identifier
+                answer = MutableHeaders(scope=message)
+                answer[REQUEST_ID_HEADER] = identifier
+                total_ms = 1e3 * (time.perf_counter() - started)
+                answer.setdefault(SERVER_TIMING, server_timing({"total": total_ms}))
+            else:
+                bytes_out += len(message.get("body", b""))
             await send(message)
 
         try:
             self._guard(scope)
-            limited = _Limited(receive, headers, self._settings)
             await limited.check_declared_length()
             with _deadline(headers):
                 await self._app(scope, limited, send_with_id)
@@ -78,10 +88,12 @@ class RequestContext:
             if not isinstance(error, SpargeError):
                 log.exception("unhandled error in request %s", identifier)
                 error = InternalError("an internal error; the log has it under this request id")
+            scope[ERROR_CODE] = error.code
             if not answering:
                 await error_response(error, identifier)(scope, receive, send_with_id)
         finally:
-            self._observe(scope, status, time.perf_counter() - started)
+            seconds = time.perf_counter() - started
+            self._observe(exchange(scope, status, seconds, limited.seen, bytes_out))
             request_id.reset(token)
 
 
@@ -111,7 +123,7 @@ class _Limited:
         self._limit = settings.max_body_bytes
         self._time_s = settings.body_time_s
         self._until = time.monotonic() + settings.body_time_s
-        self._seen = 0
+        self.seen = 0
         self._whole = False
 
     async def check_declared_length(self) -> None:
@@ -133,11 +145,11 @@ class _Limited:
             ) from None
         self._whole = not message.get("more_body", False)
         if message["type"] == "http.request":
-            self._seen += len(message.get("body", b""))
-            if self._seen > self._limit:
+            self.seen += len(message.get("body", b""))
+            if self.seen > self._limit:
                 if message.get("more_body"):
                     await self._drain()
-                raise self._too_large(self._seen)
+                raise self._too_large(self.seen)
         return message
 
     async def _drain(self) -> None:

@@ -15,6 +15,7 @@ from shared.errors import (
     NoSuchPath,
     SpargeError,
 )
+from shared.service.exchange import ERROR_CODE
 from shared.service.request_id import request_id
 
 
@@ -46,18 +47,18 @@ def install_error_handlers(app: FastAPI) -> None:
     """Answer every error that a route raises with the envelope."""
 
     @app.exception_handler(SpargeError)
-    async def known(_: Request, error: SpargeError) -> Response:
-        return error_response(error, request_id.get())
+    async def known(request: Request, error: SpargeError) -> Response:
+        return _answered(request, error)
 
     @app.exception_handler(RequestValidationError)
-    async def unvalidated(_: Request, error: RequestValidationError) -> Response:
+    async def unvalidated(request: Request, error: RequestValidationError) -> Response:
         problems = [
             {"field": ".".join(map(str, each["loc"])), "problem": each["msg"]}
             for each in error.errors()
         ]
         shown = "; ".join(f"{each['field']}: {each['problem']}" for each in problems[:5])
-        return error_response(
-            InvalidInput(f"the request is not valid: {shown}", fields=problems), request_id.get()
+        return _answered(
+            request, InvalidInput(f"the request is not valid: {shown}", fields=problems)
         )
 
     @app.exception_handler(HTTPException)
@@ -70,4 +71,9 @@ def install_error_handlers(app: FastAPI) -> None:
             translated = MethodNotAllowed(f"{place} is not possible", method=request.method)
         else:
             translated = MalformedRequest(str(error.detail))
-        return error_response(translated, request_id.get())
+        return _answered(request, translated)
+
+
+def _answered(request: Request, error: SpargeError) -> Response:
+    request.scope[ERROR_CODE] = error.code
+    return error_response(error, request_id.get())

@@ -111,6 +111,9 @@ def test_serve_answers_and_stops_on_sigterm(environment: dict[str, str]) -> None
         )
         assert done.returncode == 0, done.stderr
         assert "hold part" in done.stdout
+        examined = sparge(environment, "doctor", "--url", url)
+        assert examined.returncode == 0, examined.stdout
+        assert "3 grasps for pouring" in examined.stdout
     finally:
         server.send_signal(signal.SIGTERM)
         assert server.wait(timeout=10) in (0, -signal.SIGTERM)

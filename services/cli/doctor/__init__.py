@@ -1,0 +1,1 @@
+"""`sparge doctor`: what of an installation or of a running backend is wrong, and what to do."""
