@@ -145,6 +145,12 @@ class WrongUnits(InvalidInput):
     code = "wrong_units"
 
 
+class UnreadableFile(InvalidInput):
+    """A file that takes more memory or time to read than allowed, or crashes what reads it."""
+
+    code = "unreadable_file"
+
+
 class UnknownTask(InvalidInput):
     """The knowledge base has no such task; the details list the known ones."""
 

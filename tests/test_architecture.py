@@ -18,7 +18,7 @@ SERVICES = (
 SHARED_LAYERS = (  # lowest first; a module may import its own layer and those before it
     {"errors", "deadline", "geometry", "output"},
     {"superquadric"},
-    {"settings", "wire"},
+    {"child", "settings", "wire"},
     {"schemas"},
     {"grippers"},
     {"service"},

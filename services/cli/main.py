@@ -1,4 +1,4 @@
-"""`sparge grasp`, `annotate`, `serve`, `doctor`, and the measuring stick: `dataset`, `experiment`."""
+"""`sparge`: grasp, annotate, serve, doctor; and the measuring stick, dataset and experiment."""
 
 from __future__ import annotations
 

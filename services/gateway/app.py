@@ -19,6 +19,7 @@ from starlette.middleware.cors import CORSMiddleware
 from services.gateway import answer
 from services.gateway import request as requests
 from services.gateway.access import Access
+from services.gateway.file_reader import FileReader
 from services.gateway.knowledge import DOCUMENTED as KNOWLEDGE_ROUTES
 from services.gateway.knowledge import serve_knowledge
 from services.gateway.memory import Memory
@@ -99,6 +100,7 @@ def create_app(
     """
     settings = settings or GatewaySettings()
     clients = _connect(settings, transports or {})
+    files = FileReader(settings)
     memory = Memory(settings.kept_explanations, settings.keep_explanations_s)
 
     @asynccontextmanager
@@ -108,6 +110,7 @@ def create_app(
         finally:
             for http in clients.values():
                 await http.aclose()
+            await run_in_threadpool(files.close)
 
     async def ready() -> Health:
         all_health = await asyncio.gather(
@@ -156,7 +159,7 @@ def create_app(
 
     async def answer_grasp(request: Request) -> Response:
         started = time.perf_counter()
-        parsed = await _parse(request, settings)
+        parsed = await _parse(request, settings, files)
         parsing_ms = 1e3 * (time.perf_counter() - started)
         span = trace.get_current_span()
         span.set_attribute("sparge.task", parsed.parameters.task)
@@ -226,7 +229,9 @@ def _forward(
     return answer_from_stage
 
 
-async def _parse(request: Request, settings: GatewaySettings) -> requests.GraspRequest:
+async def _parse(
+    request: Request, settings: GatewaySettings, files: FileReader
+) -> requests.GraspRequest:
     media_type = request.headers.get("content-type", "").split(";", 1)[0].strip().lower()
     query = dict(request.query_params)
     limit = settings.max_unpacked_bytes
@@ -242,7 +247,7 @@ async def _parse(request: Request, settings: GatewaySettings) -> requests.GraspR
             fields = {name: text for name, text in form.items() if isinstance(text, str)}
             body = await upload.read()
         return await run_in_threadpool(
-            requests.from_form, upload.filename or "", body, fields, query, limit
+            requests.from_form, upload.filename or "", body, fields, query, files.read
         )
     raise UnsupportedMediaType(
         f"content type {media_type or 'none'!r} is not read here; send {JSON}, {NPZ} or {FORM}",

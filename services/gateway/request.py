@@ -2,7 +2,7 @@
 
 from __future__ import annotations
 
-from collections.abc import Mapping
+from collections.abc import Callable, Mapping
 from typing import Annotated, Any, Self
 
 import orjson
@@ -15,7 +15,7 @@ from shared.schemas.scene import InputKind, View
 from shared.schemas.task import RuleSet, Version
 from shared.wire import Message
 from shared.wire.codec import read_json_object, validate
-from shared.wire.files import read_cloud_file
+from shared.wire.files import CloudFile, read_cloud_file
 
 _ARRAYS = ("points", "depth", "intrinsics", "depth_scale")
 _JSON_VALUES = ("viewpoint", "target", "recovery", "intrinsics", "depth_scale")
@@ -74,16 +74,18 @@ def from_form(
     body: bytes,
     form: Mapping[str, str],
     query: Mapping[str, str],
-    max_unpacked_bytes: int,
+    read: Callable[..., CloudFile],
 ) -> GraspRequest:
-    """Read an uploaded file; a depth image may have `intrinsics` and `depth_scale` beside it."""
+    """Read an uploaded file; a depth image may have `intrinsics` and `depth_scale` beside it.
+
+    `read` is called as `FileReader.read`.
+    """
     fields = _typed({**form, **query})
-    held = read_cloud_file(
+    held = read(
         filename,
         body,
         intrinsics=fields.pop("intrinsics", None),
         depth_scale=fields.pop("depth_scale", None),
-        max_unpacked_bytes=max_unpacked_bytes,
     )
     return _request(held.fields(), fields)
 

@@ -58,6 +58,11 @@ class GatewaySettings(ServiceSettings):
         Web pages of these origins may ask; none unless told.
     kept_explanations, keep_explanations_s : int, float
         GET /grasp/{request_id}/explanation knows so many of the latest, for so long.
+    file_memory_bytes : int
+        What reading an uploaded file may take beside the reading process itself; one that
+        unpacks to `max_unpacked_bytes` takes up to two and a half times as much.
+    file_time_s : float
+        Processor time that reading an uploaded file may take.
     approach_distance, retreat_distance : float
         Of the pregrasp and the retreat from the grasp, in metres.
     """
@@ -84,6 +89,8 @@ class GatewaySettings(ServiceSettings):
     cors_origins: tuple[str, ...] = ()
     kept_explanations: int = Field(default=256, ge=0)
     keep_explanations_s: float = Field(default=3600.0, gt=0)
+    file_memory_bytes: int = Field(default=2**30, gt=0)
+    file_time_s: float = Field(default=10.0, gt=0)
     approach_distance: float = Field(default=0.10, gt=0)
     retreat_distance: float = Field(default=0.10, gt=0)
 

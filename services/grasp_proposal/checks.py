@@ -14,6 +14,8 @@ Mask = NDArray[np.bool_]
 
 MIN_POINTS = 10
 _MAX_COORDINATE = 1e4
+_EXPONENTS = 0.01, 4.0
+"""Wider than a recovery gives; beyond them powers of them leave the range of numbers."""
 
 
 def checked_points(request: ProposeRequest) -> tuple[Array, Mask]:
@@ -68,16 +70,23 @@ def checked_superquadrics(request: ProposeRequest, points: Array) -> tuple[Super
     Raises
     ------
     InvalidInput
-        Not finite, a size that is not positive, a quaternion of zeros, or farther from the
-        points' box than that is long: in another frame, or another object's.
+        Not finite, exponents or sizes that no shape has, a quaternion of zeros, or farther from
+        the points' box than that is long: in another frame, or another object's.
     """
     rows = request.superquadrics
     if rows is None:
         return ()
-    sound = np.isfinite(rows).all() and (rows[:, :5] > 0).all() and rows[:, 8:].any(axis=1).all()
+    least, most = _EXPONENTS
+    sound = (
+        np.isfinite(rows).all()
+        and ((rows[:, :2] >= least) & (rows[:, :2] <= most)).all()
+        and ((rows[:, 2:5] > 0) & (rows[:, 2:5] <= _MAX_COORDINATE)).all()
+        and rows[:, 8:].any(axis=1).all()
+    )
     if not sound:
         raise InvalidInput(
-            "superquadrics must be finite, exponents and semi-axes positive, quaternions not zero",
+            f"superquadrics must be finite, exponents in {least}..{most}, semi-axes positive and "
+            f"up to {_MAX_COORDINATE:g} m, quaternions not zero",
             field="superquadrics",
         )
     low, high = points.min(axis=0), points.max(axis=0)

@@ -7,6 +7,7 @@ from numpy.typing import NDArray
 
 from shared.errors import DegenerateCloud, EmptyCloud, InvalidInput, PayloadTooLarge, WrongUnits
 from shared.geometry.points import bounds
+from shared.schemas.fields import FARTHEST_M
 
 Array = NDArray[np.float64]
 
@@ -68,7 +69,7 @@ def checked_obstacles(points: Array | None, max_points: int) -> Array | None:
     Raises
     ------
     InvalidInput, PayloadTooLarge
-        NaN or infinity; too many.
+        NaN or infinity, or absurdly far away; too many.
     """
     if points is None or not len(points):
         return None
@@ -86,6 +87,13 @@ def checked_obstacles(points: Array | None, max_points: int) -> Array | None:
             field="obstacle_points",
             found=bad,
             allowed=0,
+        )
+    if (far := float(np.abs(points).max())) > FARTHEST_M:
+        raise InvalidInput(
+            f"obstacle_points: one is {far:.4g} m away; are they in metres?",
+            field="obstacle_points",
+            found=far,
+            allowed=FARTHEST_M,
         )
     return np.array(points, dtype=np.float64, order="C")
 

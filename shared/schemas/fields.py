@@ -36,7 +36,11 @@ HeldShares = Annotated[NDArray[np.float64], ArrayField("float64", ("G", 3))]
 """For each grasp the share in [0, 1] of what it holds that lies in a region: of all points between
 the pads, of those that the left pad touches, and the right one."""
 
-Vector3 = tuple[FiniteFloat, FiniteFloat, FiniteFloat]
+FARTHEST_M = 1e6
+"""What is farther away is no place that a robot sees; its square would still be exact enough."""
+Metres = Annotated[FiniteFloat, Field(ge=-FARTHEST_M, le=FARTHEST_M)]
+"""A coordinate or a distance."""
+Vector3 = tuple[Metres, Metres, Metres]
 Direction = Annotated[Vector3, AfterValidator(_points_somewhere)]
 """A vector that points somewhere."""
 Quaternion = Annotated[

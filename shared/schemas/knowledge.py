@@ -112,7 +112,12 @@ EXPORT_KNOWLEDGE = Route(
     "reasoning", "/knowledge", Nothing, KnowledgeDocument, "All that is known, as Turtle", "GET"
 )
 IMPORT_KNOWLEDGE = Route(
-    "reasoning", "/knowledge", KnowledgeImport, KnowledgeImported, "Learn from a Turtle document"
+    "reasoning",
+    "/knowledge",
+    KnowledgeImport,
+    KnowledgeImported,
+    "Learn from a Turtle document",
+    changes=True,
 )
 QUERY_KNOWLEDGE = Route(
     "reasoning", "/sparql", SparqlQuery, SparqlAnswer, "Ask the knowledge in SPARQL; read only"

@@ -31,6 +31,8 @@ class Route(Generic[Request, Response]):
         One line for the OpenAPI page.
     method : str
         GET and DELETE carry no body.
+    changes : bool
+        It changes what is known, and may be refused because of what is known.
     """
 
     service: str
@@ -39,3 +41,4 @@ class Route(Generic[Request, Response]):
     response: type[Response]
     summary: str
     method: str = "POST"
+    changes: bool = False

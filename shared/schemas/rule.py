@@ -107,14 +107,23 @@ class AffordanceName(Message):
 LIST_RULES = Route(
     "reasoning", "/rules", Nothing, RuleList, "The rules that were taught, and their words", "GET"
 )
-ADD_RULE = Route("reasoning", "/rules", RuleDefinition, Rule, "Teach a rule")
-DELETE_RULE = Route("reasoning", "/rules/{name}", RuleName, Rule, "Forget a taught rule", "DELETE")
+ADD_RULE = Route("reasoning", "/rules", RuleDefinition, Rule, "Teach a rule", changes=True)
+DELETE_RULE = Route(
+    "reasoning",
+    "/rules/{name}",
+    RuleName,
+    Rule,
+    "Forget a taught rule",
+    "DELETE",
+    changes=True,
+)
 ADD_AFFORDANCE = Route(
     "reasoning",
     "/affordances",
     AffordanceDefinition,
     Affordance,
     "Add a part affordance with its rules",
+    changes=True,
 )
 DELETE_AFFORDANCE = Route(
     "reasoning",
@@ -123,4 +132,5 @@ DELETE_AFFORDANCE = Route(
     Affordance,
     "Forget an affordance that was added, and its rules",
     "DELETE",
+    changes=True,
 )

@@ -8,7 +8,7 @@ import numpy as np
 from numpy.typing import NDArray
 from pydantic import Field, FiniteFloat, model_validator
 
-from shared.schemas.fields import Direction, Indices, Points, Vector3
+from shared.schemas.fields import Direction, Indices, Metres, Points, Vector3
 from shared.schemas.route import Route
 from shared.wire import ArrayField, Message
 
@@ -51,9 +51,9 @@ class SupportPlane(Message):
 
     normal: Direction
     """Unit vector towards the side where the objects are."""
-    offset: FiniteFloat
+    offset: Metres
     inliers: int
-    residual_mm: float
+    residual_mm: FiniteFloat
     """Robust standard deviation of the surface points about the plane."""
 
 

@@ -156,9 +156,15 @@ DECIDE = Route(
     "Find the part to hold for a task, with the proof",
 )
 LIST_TASKS = Route("reasoning", "/tasks", Nothing, TaskList, "The tasks that are known", "GET")
-ADD_TASK = Route("reasoning", "/tasks", TaskDefinition, Task, "Add a Version 2 task")
+ADD_TASK = Route("reasoning", "/tasks", TaskDefinition, Task, "Add a Version 2 task", changes=True)
 DELETE_TASK = Route(
-    "reasoning", "/tasks/{name}", TaskName, Task, "Forget a task that was added", "DELETE"
+    "reasoning",
+    "/tasks/{name}",
+    TaskName,
+    Task,
+    "Forget a task that was added",
+    "DELETE",
+    changes=True,
 )
 LIST_AFFORDANCES = Route(
     "reasoning", "/affordances", Nothing, AffordanceList, "The part affordances", "GET"

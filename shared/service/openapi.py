@@ -20,7 +20,9 @@ _ERRORS = {
     "400": "The body cannot be parsed",
     "401": "An API key is wanted and was not given, or is not known",
     "403": "The API key does not open this",
+    "404": "There is none of that name",
     "408": "The body did not arrive in time",
+    "409": "It does not fit what is known",
     "413": "The body is too large",
     "415": "The content type is not read here",
     "422": "Parsed, but not valid: says which field, what was found, what is allowed",
@@ -28,6 +30,8 @@ _ERRORS = {
     "503": "Not ready, or a stage is down; Retry-After says when to ask again",
     "504": "The answer was not ready in time",
 }
+_OF_SOME = ("404", "409")
+OF_EVERY_ROUTE = tuple(code for code in _ERRORS if code not in _OF_SOME)
 
 
 def describe(app: FastAPI, routes: Sequence[Route[Any, Any]]) -> None:
@@ -47,7 +51,7 @@ def describe(app: FastAPI, routes: Sequence[Route[Any, Any]]) -> None:
                     operation["parameters"] = _parameters(route)
                 operation["responses"] = {
                     "200": {"description": "The answer", "content": content(route.response)},
-                    **error_responses(),
+                    **error_responses(_codes(route)),
                 }
             app.openapi_schema = document
         return app.openapi_schema
@@ -81,10 +85,20 @@ def content(message: type[Message]) -> dict[str, Any]:
     }
 
 
-def error_responses(codes: Sequence[str] = tuple(_ERRORS)) -> dict[str, Any]:
+def error_responses(codes: Sequence[str] = OF_EVERY_ROUTE) -> dict[str, Any]:
     """Return the error answers, all of them the one envelope."""
     envelope = {JSON: {"schema": {"$ref": "#/components/schemas/ErrorEnvelope"}}}
     return {code: {"description": _ERRORS[code], "content": envelope} for code in codes}
+
+
+def _codes(route: Route[Any, Any]) -> list[str]:
+    """Return the statuses of the errors that a route may answer with."""
+    possible = {*OF_EVERY_ROUTE}
+    if "{" in route.path:
+        possible.add("404")
+    if route.changes:
+        possible.add("409")
+    return sorted(possible)
 
 
 def _parameters(route: Route[Any, Any]) -> list[dict[str, Any]]:

@@ -93,7 +93,7 @@ def read_cloud_file(
     PayloadTooLarge
         They would unpack to more than allowed.
     """
-    extension = PurePath(name.replace("\x00", "")).suffix.lower()
+    extension = extension_of(name)
     match extension:
         case ".ply":
             return CloudFile(points=read_ply(data, max_unpacked_bytes))
@@ -124,6 +124,11 @@ def read_cloud_file(
         found=extension[:20],
         allowed=list(EXTENSIONS),
     )
+
+
+def extension_of(name: str) -> str:
+    """Return the extension of a file's name, in lower case and with its dot; "" for none."""
+    return PurePath(name.replace("\x00", "")).suffix.lower()
 
 
 def _read_xyz(data: bytes, max_unpacked_bytes: int) -> NDArray[np.float64]:

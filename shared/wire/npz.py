@@ -9,6 +9,7 @@ object arrays (pickles) are refused.
 from __future__ import annotations
 
 import io
+import math
 import zipfile
 import zlib
 from collections.abc import Mapping
@@ -43,12 +44,12 @@ def read_npz(data: bytes, max_unpacked_bytes: int) -> dict[str, NDArray[Any]]:
         with zipfile.ZipFile(io.BytesIO(data)) as archive:
             members = archive.infolist()
             _check_sizes(members, max_unpacked_bytes)
-            contents = {member.filename: archive.read(member) for member in members}
-    except (zipfile.BadZipFile, zlib.error, EOFError, OSError, ValueError) as error:
+            contents = {member.filename: _unpack(archive, member) for member in members}
+    except (zipfile.BadZipFile, zlib.error, EOFError, OSError, ValueError, OverflowError) as error:
         raise MalformedRequest(f"the body is not a complete npz archive: {error}") from None
     except RuntimeError as error:  # zipfile's word for an encrypted or exotic member
         raise MalformedRequest(f"the npz archive cannot be read: {error}") from None
-    return {name.removesuffix(".npy"): _read_array(name, held) for name, held in contents.items()}
+    return {name.removesuffix(".npy"): read_npy(held, name) for name, held in contents.items()}
 
 
 def _check_sizes(members: list[zipfile.ZipInfo], max_unpacked_bytes: int) -> None:
@@ -72,7 +73,23 @@ def _check_sizes(members: list[zipfile.ZipInfo], max_unpacked_bytes: int) -> Non
         )
 
 
-def _read_array(name: str, content: bytes) -> NDArray[Any]:
+def _unpack(archive: zipfile.ZipFile, member: zipfile.ZipInfo) -> bytes:
+    """Return the content of a member; no more is unpacked than it claims to hold.
+
+    `ZipFile.read` would unpack up to 1 GiB before it looks at the claim.
+    """
+    with archive.open(member) as stream:
+        return stream.read(member.file_size)
+
+
+def read_npy(content: bytes, name: str) -> NDArray[Any]:
+    """Return the one array of an npy file; `name` is for messages.
+
+    Raises
+    ------
+    MalformedRequest
+        Not a plain numeric array, or not as large as it claims.
+    """
     stream = io.BytesIO(content)
     try:
         version = np.lib.format.read_magic(stream)
@@ -84,23 +101,26 @@ def _read_array(name: str, content: bytes) -> NDArray[Any]:
         shape, fortran_order, dtype = read_header(stream)
     except (ValueError, SyntaxError, RecursionError, MemoryError, TypeError) as error:
         raise MalformedRequest(f"array {name!r} has no valid npy header: {error}") from None
+    if dtype.itemsize == 0:
+        raise MalformedRequest(f"array {name!r} holds values of no size")
     if dtype.hasobject:
         raise MalformedRequest(
             f"array {name!r} holds pickled objects; only plain numbers are accepted"
         )
     start = stream.tell()
-    count = 1
-    for length in shape:
-        count *= length
+    count = math.prod(shape)
     if min(shape, default=1) < 0 or count * dtype.itemsize != len(content) - start:
         raise MalformedRequest(
             f"array {name!r} claims shape {shape} of {dtype}, "
             f"but holds {len(content) - start} bytes"
         )
-    if count == 0 or dtype.itemsize == 0:
-        return np.zeros(shape, dtype)
-    flat = np.frombuffer(content, dtype=dtype, offset=start)
-    return flat.reshape(shape, order="F" if fortran_order else "C")
+    try:
+        if count == 0:
+            return np.zeros(shape, dtype)
+        flat = np.frombuffer(content, dtype=dtype, offset=start)
+        return flat.reshape(shape, order="F" if fortran_order else "C")
+    except (ValueError, TypeError) as error:  # more dimensions than NumPy has, lengths beyond it
+        raise MalformedRequest(f"array {name!r} cannot be held: {error}") from None
 
 
 def write_npz(arrays: Mapping[str, ArrayLike], *, compress: bool = False) -> bytes:
@@ -111,7 +131,12 @@ def write_npz(arrays: Mapping[str, ArrayLike], *, compress: bool = False) -> byt
         for name, array in arrays.items():
             member = zipfile.ZipInfo(f"{name}.npy")  # a fixed date: no clock in the bytes
             member.compress_type = method
-            content = io.BytesIO()
-            np.lib.format.write_array(content, np.asarray(array), allow_pickle=False)
-            archive.writestr(member, content.getvalue())
+            archive.writestr(member, write_npy(array))
     return stream.getvalue()
+
+
+def write_npy(array: ArrayLike) -> memoryview:
+    """Return an npy file of an array."""
+    stream = io.BytesIO()
+    np.lib.format.write_array(stream, np.asarray(array), allow_pickle=False)
+    return stream.getbuffer()

@@ -98,6 +98,8 @@ def read_pcd(data: bytes, max_unpacked_bytes: int) -> NDArray[np.float64]:
             found=unpacked,
             allowed=max_unpacked_bytes,
         )
+    if header.points == 0:
+        return np.empty((0, 3))
     if header.encoding == "ascii":
         return _read_ascii(stream, header, columns, max_unpacked_bytes)
     body = data[stream.tell() :]
@@ -215,8 +217,6 @@ def _read_binary(body: bytes, header: _Header, columns: list[int]) -> NDArray[np
 
 def _read_compressed(body: bytes, header: _Header, columns: list[int]) -> NDArray[np.float64]:
     """Unpack the LZF block and read it; there each field's values lie together."""
-    if header.points == 0:
-        return np.empty((0, 3))
     if len(body) < 8:
         raise MalformedRequest("the PCD file ends before its compressed data")
     packed_size, unpacked_size = struct.unpack_from("<II", body)

@@ -16,7 +16,6 @@ import pytest
 from hypothesis import given, settings
 from hypothesis import strategies as st
 from numpy.typing import NDArray
-from PIL import Image
 
 from shared.errors import (
     InvalidInput,
@@ -27,43 +26,12 @@ from shared.errors import (
 from shared.schemas.scene import View
 from shared.wire.files import EXTENSIONS, read_cloud_file
 from shared.wire.npz import write_npz
+from tests.support.cloud_files import pcd, ply, png, xyz_header
 
 POINTS = np.random.default_rng(3).uniform(-1, 1, (60, 3)).astype(np.float32)
 INTRINSICS = [[615.0, 0.0, 320.0], [0.0, 615.0, 240.0], [0.0, 0.0, 1.0]]
 DEPTH = np.random.default_rng(4).integers(0, 2**16, (12, 17)).astype(np.uint16)
 MAX_BYTES = 2**20
-
-
-def ply(body: bytes, *header: str, encoding: str = "binary_little_endian") -> bytes:
-    lines = ["ply", f"format {encoding} 1.0", *header, "end_header", ""]
-    return "\n".join(lines).encode() + body
-
-
-def xyz_header(count: int, kind: str = "float") -> list[str]:
-    return [f"element vertex {count}", *(f"property {kind} {axis}" for axis in "xyz")]
-
-
-def pcd(body: bytes, encoding: str, points: int, **changes: str) -> bytes:
-    entries = {
-        "VERSION": "0.7",
-        "FIELDS": "x y z",
-        "SIZE": "4 4 4",
-        "TYPE": "F F F",
-        "COUNT": "1 1 1",
-        "WIDTH": str(points),
-        "HEIGHT": "1",
-        "VIEWPOINT": "0 0 0 1 0 0 0",
-        "POINTS": str(points),
-        "DATA": encoding,
-    } | changes
-    text = "".join(f"{key} {value}\n" for key, value in entries.items() if value)
-    return b"# .PCD v0.7\n" + text.encode() + body
-
-
-def png(image: NDArray[np.generic]) -> bytes:
-    stream = io.BytesIO()
-    Image.fromarray(image).save(stream, "PNG")
-    return stream.getvalue()
 
 
 def open3d_file(folder: Path, extension: str, *, as_text: bool, compressed: bool) -> bytes:

@@ -10,6 +10,7 @@ import pytest
 
 from services.gateway.request import GraspRequest, from_form, from_json, from_npz
 from shared.errors import InvalidInput, MalformedRequest, SpargeError
+from shared.wire.files import read_cloud_file
 from shared.wire.npz import write_npz
 
 LIMIT = 10**7
@@ -40,7 +41,7 @@ def test_all_bodies_agree() -> None:
         {},
     )
     by_npz = from_npz(write_npz({"points": CLOUD}), QUERY, LIMIT)
-    by_form = from_form("cloud.xyz", xyz(CLOUD), QUERY, {}, LIMIT)
+    by_form = from_form("cloud.xyz", xyz(CLOUD), QUERY, {}, read_cloud_file)
     assert by_json == by_npz
     assert by_json == by_form
     assert list(by_json.parameters.viewpoint) == [0, 0, 0.5]
