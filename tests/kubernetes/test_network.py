@@ -56,7 +56,7 @@ def test_only_the_gateway_reaches_the_stages(objects: list[Object]) -> None:
     gateway = labels.pop("gateway")
     assert len(labels) == 6
     for stage in labels.values():
-        assert allowed(policies, gateway, stage) == {"http"}
+        assert allowed(policies, gateway, stage) == {8000}
         assert allowed(policies, None, stage) == set()
         assert allowed(policies, STRANGER, stage) == set()
         for other in (*labels.values(), gateway, None):
@@ -66,14 +66,14 @@ def test_only_the_gateway_reaches_the_stages(objects: list[Object]) -> None:
 def test_the_gateway_is_reached_and_asks_for_names_and_stages(objects: list[Object]) -> None:
     policies = list(of_kind(objects, "NetworkPolicy").values())
     gateway = pod_labels(of_kind(objects, "Deployment")["gateway"])
-    assert allowed(policies, None, gateway) == {"http"}
+    assert allowed(policies, None, gateway) == {8000}
     assert allowed(policies, gateway, None) == {53}
 
 
 def test_policies_name_a_port_that_pods_have(objects: list[Object]) -> None:
     for deployment in of_kind(objects, "Deployment").values():
         (container,) = pod_of(deployment)["containers"]
-        assert [port["name"] for port in container["ports"]] == ["http"]
+        assert [port["containerPort"] for port in container["ports"]] == [8000]
 
 
 def test_without_policies_everything_passes() -> None:

@@ -148,6 +148,16 @@ def test_images_are_targets_of_the_dockerfile(objects: list[Object]) -> None:
             assert tag in ("", __version__)  # the base's files leave it to its kustomization
 
 
+def test_autoscalers_in_the_files_have_a_target() -> None:
+    """Where nothing renders, too."""
+    found = [each for folder in kustomizations() for each in own_objects(folder)]
+    scaled = of_kind(found, "HorizontalPodAutoscaler")
+    assert set(scaled) == SERVICES
+    for name, each in scaled.items():
+        assert each["spec"]["scaleTargetRef"]["name"] == name
+        assert name in of_kind(base_objects(), "Deployment")
+
+
 def test_autoscalers_have_a_target(overlay: dict[str, list[Object]]) -> None:
     for name, objects in overlay.items():
         deployments = of_kind(objects, "Deployment")
