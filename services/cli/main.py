@@ -5,6 +5,7 @@ from __future__ import annotations
 import os
 import sys
 from enum import StrEnum
+from functools import partial
 from pathlib import Path
 from typing import Annotated
 
@@ -151,7 +152,8 @@ def serve(
         settings = settings.model_copy(update={"insecure": True})
     require_guarded(host, settings)
     uvicorn.run(
-        create_app(settings),
+        partial(create_app, settings),
+        factory=True,  # made once uvicorn has set up its logs, so that ours are the same
         host=host,
         port=port,
         timeout_graceful_shutdown=5,

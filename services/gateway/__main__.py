@@ -4,6 +4,7 @@ from __future__ import annotations
 
 import argparse
 import sys
+from functools import partial
 
 import uvicorn
 
@@ -27,10 +28,15 @@ def main() -> None:
         if given.insecure:
             settings = settings.model_copy(update={"insecure": True})
         require_guarded(given.host, settings)
-        app = create_app(settings)
+        uvicorn.run(
+            partial(create_app, settings),
+            factory=True,  # made once uvicorn has set up its logs, so that ours are the same
+            host=given.host,
+            port=given.port,
+            timeout_graceful_shutdown=4,
+        )
     except (SpargeError, ValueError) as error:
         sys.exit(f"the gateway does not start: {error}")
-    uvicorn.run(app, host=given.host, port=given.port, timeout_graceful_shutdown=4)
 
 
 if __name__ == "__main__":
