@@ -29,6 +29,7 @@ from shared.wire import NPZ, Message
 from shared.wire.npz import read_npz, write_npz
 
 BACKEND = "backend"
+API_KEY_VARIABLE = "SPARGE_API_KEY"
 
 
 @dataclass(frozen=True)
@@ -137,12 +138,16 @@ def connect(url: str, timeout_s: float = 120.0, api_key: str | None = None) -> I
     timeout_s : float
         How long to wait for an answer.
     api_key : str, optional
-        For a backend that wants one; else the environment variable `SPARGE_API_KEY`.
+        For a backend that wants one; else that of the environment, `API_KEY_VARIABLE`.
     """
-    key = api_key or os.environ.get("SPARGE_API_KEY")
-    headers = {"Authorization": f"Bearer {key}"} if key else {}
-    with httpx.Client(base_url=url, timeout=timeout_s, headers=headers) as http:
+    with httpx.Client(base_url=url, timeout=timeout_s, headers=key_headers(api_key)) as http:
         yield Sparge(http.request)
+
+
+def key_headers(api_key: str | None = None) -> dict[str, str]:
+    """Return the headers that show an API key: this one, or that of the environment, if any."""
+    key = api_key or os.environ.get(API_KEY_VARIABLE)
+    return {"Authorization": f"Bearer {key}"} if key else {}
 
 
 def _query(parameters: Mapping[str, Any]) -> dict[str, str]:

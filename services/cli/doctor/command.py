@@ -79,6 +79,10 @@ def _installation(quick: bool, host: str, port: int) -> Iterator[Finding]:
 
 def _checks(host: str, port: int) -> Iterator[Finding]:
     yield from system.python()
+    yield from system.memory()
+    yield from system.disk()
+    yield from system.clock()
+    yield from system.port(host, port)
     yield from environment.configuration()
     try:
         gateway, reasoning = GatewaySettings(), ReasoningSettings()
@@ -88,21 +92,18 @@ def _checks(host: str, port: int) -> Iterator[Finding]:
     urls = {name: stage_url for name in STAGES if (stage_url := gateway.stage_url(name))}
     here = [name for name in STAGES if name not in urls]
     yield from system.libraries(here)
-    yield from system.memory()
-    yield from system.disk()
-    yield from system.clock()
-    yield from system.port(host, port)
     extras = [extra_of(each) for each in (*here, "gateway")]
     if tracing.configured():
         extras.append("tracing")
     yield from probe("packages", *extras)
     if "reasoning" in here:
-        yield from knowledge.swipl()
+        prolog = [*probe("pyswip")]
+        works = worst(prolog) is Status.ok
+        yield from knowledge.swipl(Status.warn if works else Status.fail)
+        yield from prolog
         yield from knowledge.folder(reasoning.knowledge_dir)
         yield from knowledge.journal(reasoning.knowledge_dir)
-        works = [*probe("pyswip")]
-        yield from works
-        if worst(works) is Status.ok:
+        if works:
             yield from probe("reasoning")
     yield from probe("models", *here)
     for name, stage_url in urls.items():

@@ -13,6 +13,7 @@ from pydantic_settings import BaseSettings
 
 from services.cli.doctor.finding import Finding, Status
 from services.gateway.settings import STAGES
+from shared.client import API_KEY_VARIABLE
 from shared.grippers.library import load_grippers
 from shared.service.logs import LogSettings
 
@@ -50,6 +51,7 @@ def configuration(environment: Mapping[str, str] = os.environ) -> Iterator[Findi
     """Check every variable's name and value."""
     classes = settings_classes()
     known = {name for each in classes.values() for name in variables(each).values()}
+    known.add(API_KEY_VARIABLE)
     problems = [*_unknown(environment, known)]
     for settings in classes.values():
         problems += _invalid(settings)

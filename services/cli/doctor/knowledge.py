@@ -1,4 +1,4 @@
-"""The folder of what is learned: can it be written, can the journal be read."""
+"""What reasoning needs of the machine: SWI-Prolog, a folder to write to, a journal to read."""
 
 from __future__ import annotations
 
@@ -15,12 +15,19 @@ from shared.errors import InternalError
 SETTING = "SPARGE_REASONING_KNOWLEDGE_DIR"
 
 
-def swipl() -> Iterator[Finding]:
-    """Check that SWI-Prolog is there: pyswip asks the program where its library is."""
-    program = shutil.which("swipl")
+def swipl(otherwise: Status) -> Iterator[Finding]:
+    """Check that SWI-Prolog is there.
+
+    Parameters
+    ----------
+    otherwise : Status
+        If it is not: pyswip asks the program where its library is, but finds it in the
+        system's usual places as well.
+    """
     advice = "on Debian: apt-get install swi-prolog-nox"
+    program = shutil.which("swipl")
     if program is None:
-        yield Finding("swi-prolog", Status.fail, "no program swipl in the PATH", advice)
+        yield Finding("swi-prolog", otherwise, "no program swipl in the PATH", advice)
         return
     try:
         done = subprocess.run([program, "--version"], capture_output=True, text=True, timeout=10)
@@ -30,7 +37,7 @@ def swipl() -> Iterator[Finding]:
     if works:
         yield Finding("swi-prolog", Status.ok, f"{said} at {program}")
     else:
-        yield Finding("swi-prolog", Status.fail, f"{program}: {said}", advice)
+        yield Finding("swi-prolog", otherwise, f"{program}: {said}", advice)
 
 
 def folder(path: Path) -> Iterator[Finding]:

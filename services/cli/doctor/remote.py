@@ -7,12 +7,15 @@ from collections.abc import Iterator
 from email.utils import parsedate_to_datetime
 
 import httpx
+from pydantic import SecretStr, ValidationError
 
 from services.cli.doctor.finding import Finding, Status
 from services.cli.doctor.question import ask
 from shared import __version__
-from shared.client import connect
+from shared.client import connect, key_headers
 from shared.errors import SpargeError
+from shared.service.secret import secret_headers
+from shared.settings import ServiceSettings
 
 _TIMEOUT_S = 5.0
 _SKEW_S = 3.0
@@ -28,7 +31,8 @@ def service(name: str, url: str, setting: str) -> Iterator[Finding]:
     """
     advice = f"is it running, and is {setting} right?"
     try:
-        with httpx.Client(base_url=url, timeout=_TIMEOUT_S) as http:
+        headers = key_headers() if name == "gateway" else secret_headers(_secret())
+        with httpx.Client(base_url=url, timeout=_TIMEOUT_S, headers=headers) as http:
             version = http.get("/version")
             about = version.json()
             health = http.get("/health/ready").json()
@@ -55,6 +59,13 @@ def service(name: str, url: str, setting: str) -> Iterator[Finding]:
     yield from _clock(name, version.headers.get("date"))
 
 
+def _secret() -> SecretStr | None:
+    try:
+        return ServiceSettings().stage_secret
+    except ValidationError:  # told as a finding of the configuration
+        return None
+
+
 def _clock(name: str, date: str | None) -> Iterator[Finding]:
     if not date:
         return
@@ -67,7 +78,7 @@ def _clock(name: str, date: str | None) -> Iterator[Finding]:
 def metrics(url: str) -> Iterator[Finding]:
     """Check that a backend can be scraped."""
     try:
-        text = httpx.get(f"{url}/metrics", timeout=_TIMEOUT_S).text
+        text = httpx.get(f"{url}/metrics", timeout=_TIMEOUT_S, headers=key_headers()).text
     except httpx.HTTPError as error:
         yield Finding("metrics", Status.warn, str(error) or type(error).__name__)
         return

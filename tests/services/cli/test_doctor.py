@@ -74,12 +74,15 @@ def test_everything_that_is_broken_is_told_at_once(tmp_path: Path) -> None:
     (nobody,) = free_ports(1)
     blocked = tmp_path / "file"
     blocked.touch()
+    no_prolog = tmp_path / "no_prolog"
+    no_prolog.mkdir()
+    (no_prolog / "pyswip.py").write_text("raise ImportError('SWI-Prolog library not found')")
     with socket.create_server(("127.0.0.1", 0)) as taken:
         code, report = sparge_doctor(
             {
                 "PATH": str(tmp_path),
+                "PYTHONPATH": os.pathsep.join([str(no_prolog), *filter(None, sys.path)]),
                 "SPARGE_REASONING_KNOWLEDGE_DIR": str(blocked / "knowledge"),
-                "SPARGE_REASONING_RULES_DIR": str(tmp_path / "no rules"),
                 "SPARGE_GATEWAY_DEADLINE": "3",
                 **{
                     f"SPARGE_GATEWAY_{each.upper()}_URL": f"http://127.0.0.1:{nobody}"
@@ -93,8 +96,8 @@ def test_everything_that_is_broken_is_told_at_once(tmp_path: Path) -> None:
     broken = {each["check"]: each for each in report["findings"] if each["status"] == "fail"}
     assert all(each["advice"] for each in broken.values())
     asked = {each for each in STAGES if each != "reasoning"}
-    assert set(broken) >= {"configuration", "port", "swi-prolog", "knowledge folder", *asked}
-    assert {"pyswip", "rules"} & set(broken), "without swipl pyswip may find its library, or not"
+    assert set(broken) >= {"configuration", "port", "pyswip", "swi-prolog", "knowledge folder"}
+    assert set(broken) >= asked
     assert broken["configuration"]["advice"] == "meant is SPARGE_GATEWAY_DEADLINE_S?"
     assert report["findings"][-1]["status"] == "skip", "no question is asked"
 
@@ -136,14 +139,15 @@ def test_the_users_own_grippers_are_read(tmp_path: Path) -> None:
 
 
 def test_swipl_is_sought_in_the_path(tmp_path: Path, monkeypatch: pytest.MonkeyPatch) -> None:
-    assert only(knowledge.swipl()).status is Status.ok
+    assert only(knowledge.swipl(Status.fail)).status is Status.ok
     monkeypatch.setenv("PATH", str(tmp_path))
-    assert "apt-get install swi-prolog-nox" in failed(knowledge.swipl()).advice
+    assert only(knowledge.swipl(Status.warn)).status is Status.warn
+    assert "apt-get install swi-prolog-nox" in failed(knowledge.swipl(Status.fail)).advice
     broken = tmp_path / "swipl"
     broken.write_text("#!/bin/sh\necho no home >&2\nexit 2\n")
     broken.chmod(0o755)
     monkeypatch.setenv("PATH", f"{tmp_path}:/bin")
-    assert "no home" in failed(knowledge.swipl()).message
+    assert "no home" in failed(knowledge.swipl(Status.fail)).message
 
 
 def test_a_knowledge_folder_that_cannot_be_written(tmp_path: Path) -> None:
@@ -166,6 +170,21 @@ def test_a_crash_is_a_finding(tmp_path: Path, monkeypatch: pytest.MonkeyPatch) -
     found = failed(probe("pyswip"))
     assert found.check == "pyswip"
     assert "was ended by SIGSEGV" in found.message
+
+
+def test_rules_and_an_ontology_that_do_not_load(
+    tmp_path: Path, monkeypatch: pytest.MonkeyPatch
+) -> None:
+    (tmp_path / "broken.ttl").write_text("this is no Turtle")
+    monkeypatch.setenv("SPARGE_REASONING_RULES_DIR", str(tmp_path / "nowhere"))
+    monkeypatch.setenv("SPARGE_REASONING_ONTOLOGY_FILE", str(tmp_path / "broken.ttl"))
+    found = [*probe("reasoning")]
+    assert [(each.check, each.status) for each in found] == [
+        ("rules", Status.fail),
+        ("ontology", Status.fail),
+    ]
+    assert "SPARGE_REASONING_RULES_DIR" in found[0].advice
+    assert "broken.ttl" in found[1].message
 
 
 def test_a_missing_package_and_a_hang(tmp_path: Path, monkeypatch: pytest.MonkeyPatch) -> None:
