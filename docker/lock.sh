@@ -12,7 +12,7 @@ compile() {
         --allow-unsafe --strip-extras --no-emit-index-url --no-emit-find-links \
         --no-emit-trusted-host --output-file="$output" "$@" pyproject.toml
 }
-extras=$(for each in $services cli experiments dev; do printf ' --extra %s' "$each"; done)
+extras=$(for each in $services cli experiments annotate dev; do printf ' --extra %s' "$each"; done)
 compile requirements.lock $extras
 compile requirements-training.lock $extras --extra train --constraint requirements.lock
 for each in $services; do
