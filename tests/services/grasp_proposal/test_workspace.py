@@ -59,7 +59,7 @@ def test_without_superquadrics_the_mass_is_where_the_points_are() -> None:
     ("change", "message"),
     [
         ({6: 1.5}, r"1\.\d+ m away from the points"),
-        ({2: 0.0}, "must be finite, exponents and semi-axes positive"),
+        ({2: 0.0}, r"must be finite, exponents in 0\.01\.\.4"),
         ({5: np.nan}, "must be finite"),
         ({11: 0.0}, "quaternions not zero"),
     ],
@@ -134,7 +134,7 @@ def test_thinning_leaves_a_point_near_every_point() -> None:
         ({"obstacle_points": np.full((2, 3), np.inf)}, "obstacle_points must", InvalidInput),
         ({"focus": np.ones(3, dtype=bool)}, "focus has 3 entries", InvalidInput),
         ({"focus": np.zeros(len(SCENE.points), dtype=bool)}, "no true entry", InvalidInput),
-        ({"viewpoint": (0, 0, -1e200)}, "viewpoint is", InvalidInput),
+        ({"viewpoint": (0, 0, -1e5)}, "viewpoint is", InvalidInput),
     ],
 )
 def test_bad_input_is_named(
