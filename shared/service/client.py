@@ -115,7 +115,7 @@ class StageClient:
             if response.headers.get("content-encoding", "identity") != "identity":
                 raise unavailable(self.service, "answered nonsense: packed, unasked")
             pieces, size = [], 0
-            async for piece in response.aiter_raw():
+            async for piece in response.aiter_bytes():
                 pieces.append(piece)
                 size += len(piece)
                 if size > MAX_ANSWER_BYTES:
