@@ -1,6 +1,6 @@
 # Two commands matter: `make run` and `make test`. `make help` lists the rest.
 .DEFAULT_GOAL := help
-.PHONY: help setup run serve test load soak compose-load compose-test check bench experiments catalogue train-grasps lock clean
+.PHONY: help setup run serve test load soak compose-load compose-test check fuzz bench experiments catalogue train-grasps lock clean
 
 SAMPLE ?= experiments/samples/bottle.npz
 TASK ?= pouring
@@ -40,6 +40,17 @@ check: setup  ## ruff and mypy --strict
 	@.venv/bin/ruff check .
 	@.venv/bin/ruff format --check .
 	@.venv/bin/mypy
+
+CASES ?= 2000
+FUZZ_SEED ?= $(shell date +%s)
+FUZZ_LIMIT ?= 2h
+FUZZED = tests/contract/test_conformance.py tests/services/gateway/test_file_reader.py \
+	tests/services/gateway/test_hostile_files.py
+
+fuzz: setup  ## Made-up requests to every service and damaged files, CASES of each; two hours at most
+	@echo "FUZZ_SEED=$(FUZZ_SEED)"
+	@SPARGE_FUZZ_CASES=$(CASES) SPARGE_FUZZ_SEED=$(FUZZ_SEED) timeout $(FUZZ_LIMIT) \
+		.venv/bin/python -m pytest --numprocesses=auto --maxprocesses=4 --dist=worksteal $(FUZZED)
 
 bench: setup  ## Reasoning under load: memory over 100,000 requests, decision times; half an hour
 	@.venv/bin/python -m tests.bench

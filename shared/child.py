@@ -117,7 +117,8 @@ class Child:
             kind = _receive(self._pipe)
             answer = [_receive(self._pipe) for _ in range(int(_receive(self._pipe)))]
         except (OSError, ValueError):
-            raise ChildTooSlow if late.is_set() else ChildEnded(self._end()) from None
+            exit_status = self._end()
+            raise ChildTooSlow if late.is_set() else ChildEnded(exit_status) from None
         finally:
             watch.cancel()
         if kind != _ANSWER:

@@ -125,7 +125,7 @@ class Sparge:
     def _request(self, *, method: str, url: str, **options: Any) -> httpx.Response:
         try:
             return self._send(method, url, **options)
-        except httpx.TransportError as error:
+        except httpx.RequestError as error:
             raise unavailable(BACKEND, f"cannot be reached: {error}") from None
 
 

@@ -194,6 +194,12 @@ class StageUnavailable(SpargeError):
     retry_after_s = 2
 
 
+class NotStored(StageUnavailable):
+    """A change of the knowledge cannot be written to disk; nothing of it was taken."""
+
+    code = "not_stored"
+
+
 class DeadlineExceeded(SpargeError):
     """The answer was not ready in time."""
 

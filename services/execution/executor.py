@@ -73,8 +73,8 @@ class Executor:
     def _ready(self, simulator: Simulator | None) -> Simulator:
         if self._closed.is_set():
             raise StageUnavailable("the execution stage is shutting down", stage="execution")
-        if simulator is not None and simulator.alive:
-            if simulator.executions < self._settings.executions_per_worker:
+        if simulator is not None:
+            if simulator.alive and simulator.executions < self._settings.executions_per_worker:
                 return simulator
             simulator.stop()
         return Simulator()

@@ -28,7 +28,7 @@ from services.gateway.openapi import describe_grasp, describe_knowledge
 from services.gateway.pipeline import Pipeline
 from services.gateway.settings import STAGES, GatewaySettings
 from shared.deadline import within
-from shared.errors import InvalidInput, UnsupportedMediaType
+from shared.errors import InvalidInput, StageUnavailable, UnsupportedMediaType
 from shared.schemas.answer import EXPLANATION, KeptExplanation, RequestName
 from shared.schemas.execution import EXECUTE
 from shared.schemas.grasp import LIST_GRIPPERS
@@ -59,7 +59,7 @@ LIMITS = httpx.Limits(max_connections=256, max_keepalive_connections=64, keepali
 """Of connections to stages. An idle one is given up before uvicorn does, after 5 s: a request on a
 connection that is just being closed is lost."""
 FORM = "multipart/form-data"
-_HEALTH_TIMEOUT_S = 5.0
+_HEALTH_TIMEOUT_S = 2.0
 _PASSED_ON: tuple[Route[Any, Any], ...] = (
     LIST_TASKS,
     ADD_TASK,
@@ -240,12 +240,17 @@ async def _parse(
     if media_type == NPZ:
         return await run_in_threadpool(requests.from_npz, await request.body(), query, limit)
     if media_type == FORM:
-        async with request.form(max_files=1, max_fields=32) as form:
-            upload = form.get("file")
-            if not isinstance(upload, UploadFile):
-                raise InvalidInput("the form has no file field named 'file'", field="file")
-            fields = {name: text for name, text in form.items() if isinstance(text, str)}
-            body = await upload.read()
+        try:
+            async with request.form(max_files=1, max_fields=32) as form:
+                upload = form.get("file")
+                if not isinstance(upload, UploadFile):
+                    raise InvalidInput("the form has no file field named 'file'", field="file")
+                fields = {name: text for name, text in form.items() if isinstance(text, str)}
+                body = await upload.read()
+        except OSError as error:  # what is over a megabyte lies in a temporary file meanwhile
+            raise StageUnavailable(
+                f"the gateway has no place to keep the upload ({error.strerror})", stage="gateway"
+            ) from error
         return await run_in_threadpool(
             requests.from_form, upload.filename or "", body, fields, query, files.read
         )

@@ -80,13 +80,14 @@ def checked_superquadrics(request: ProposeRequest, points: Array) -> tuple[Super
     sound = (
         np.isfinite(rows).all()
         and ((rows[:, :2] >= least) & (rows[:, :2] <= most)).all()
-        and ((rows[:, 2:5] > 0) & (rows[:, 2:5] <= _MAX_COORDINATE)).all()
+        and (rows[:, 2:5] > 0).all()
+        and (np.abs(rows) <= _MAX_COORDINATE).all()
         and rows[:, 8:].any(axis=1).all()
     )
     if not sound:
         raise InvalidInput(
-            f"superquadrics must be finite, exponents in {least}..{most}, semi-axes positive and "
-            f"up to {_MAX_COORDINATE:g} m, quaternions not zero",
+            f"superquadrics must be finite, exponents in {least}..{most}, semi-axes positive, "
+            f"quaternions not zero, nothing beyond {_MAX_COORDINATE:g}",
             field="superquadrics",
         )
     low, high = points.min(axis=0), points.max(axis=0)

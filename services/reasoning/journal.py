@@ -26,7 +26,7 @@ from pathlib import Path
 from pydantic import ValidationError
 
 from services.reasoning.change import Change
-from shared.errors import InternalError, StageUnavailable, TooBusy
+from shared.errors import InternalError, NotStored, StageUnavailable, TooBusy
 
 _SETTING = "SPARGE_REASONING_KNOWLEDGE_DIR"
 _HEADER = b"sparge knowledge 1\n"
@@ -64,7 +64,19 @@ class Journal:
         ------
         InternalError
             A line that is not the last one is damaged, or is not a change; names it.
+        StageUnavailable
+            The file cannot be read. After either, the next call reads it from the beginning.
         """
+        try:
+            return self._news()
+        except OSError as error:
+            self.close()
+            raise self._unreadable(error) from error
+        except InternalError:
+            self.close()
+            raise
+
+    def _news(self) -> list[Change]:
         try:
             status = self._file.stat()
         except (FileNotFoundError, NotADirectoryError):
@@ -85,7 +97,7 @@ class Journal:
 
         Raises
         ------
-        StageUnavailable
+        NotStored
             The folder cannot be written.
         TooBusy
             Another process keeps it for seconds.
@@ -96,7 +108,10 @@ class Journal:
         except OSError as error:
             raise self._not_writable(error) from error
         try:
-            _acquire(lock)
+            try:
+                _acquire(lock)
+            except OSError as error:
+                raise self._not_writable(error) from error
             yield
         finally:
             os.close(lock)
@@ -106,7 +121,7 @@ class Journal:
 
         Raises
         ------
-        StageUnavailable
+        NotStored
             It cannot be stored.
         """
         if self.needs_rewrite():
@@ -137,7 +152,7 @@ class Journal:
 
         Raises
         ------
-        StageUnavailable
+        NotStored
             It cannot be stored; the old file stays.
         """
         text = _HEADER + _line(snapshot)
@@ -167,7 +182,8 @@ class Journal:
     def close(self) -> None:
         """Let go of the file."""
         if self._handle is not None:
-            os.close(self._handle)
+            with contextlib.suppress(OSError):
+                os.close(self._handle)
         self._handle, self._seen, self._read, self.records = None, 0, 0, 0
         self._suspect = False
 
@@ -214,11 +230,17 @@ class Journal:
         finally:
             os.close(handle)
 
-    def _not_writable(self, error: OSError) -> StageUnavailable:
-        log.error("knowledge folder %s: %s", self._folder, error)
+    def _unreadable(self, error: OSError) -> StageUnavailable:
         return StageUnavailable(
-            "the change cannot be stored: the knowledge folder is not writable "
-            f"({error.strerror}); set {_SETTING} to one that is",
+            f"the knowledge folder {self._folder} cannot be read ({error.strerror})",
+            stage="reasoning",
+        )
+
+    def _not_writable(self, error: OSError) -> NotStored:
+        log.error("knowledge folder %s: %s", self._folder, error)
+        return NotStored(
+            f"reasoning cannot store the change ({error.strerror}); nothing of it was taken. "
+            f"Make room for it, or set {_SETTING} to a folder that can be written",
             stage="reasoning",
             setting=_SETTING,
         )

@@ -81,7 +81,7 @@ class Knowledge:
             An affordance that is not known, or no part to hold.
         Conflict
             The name is taken.
-        StageUnavailable
+        NotStored
             It cannot be stored.
         """
         (admitted,) = self._memory.change(Change(tasks=(definition,))).tasks
@@ -97,7 +97,7 @@ class Knowledge:
             There is no such task.
         Conflict
             It is part of the shipped knowledge, or only known by a taught rule.
-        StageUnavailable
+        NotStored
             It cannot be removed from the store.
         """
         with self._memory.reading() as learned:
@@ -124,7 +124,7 @@ class Knowledge:
 
         Raises
         ------
-        InvalidInput, Conflict, StageUnavailable
+        InvalidInput, Conflict, NotStored
             As for rules; nothing of it is kept.
         """
         affordance = Affordance(name=definition.name, description=definition.description)
@@ -163,7 +163,7 @@ class Knowledge:
             no part satisfies.
         Conflict
             The name is taken, or affordances would ask for each other in a circle.
-        StageUnavailable
+        NotStored
             It cannot be stored.
         """
         (admitted,) = self._memory.change(Change(rules=(definition,))).rules

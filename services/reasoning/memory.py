@@ -4,6 +4,7 @@ from __future__ import annotations
 
 import contextlib
 import itertools
+import logging
 import threading
 from collections.abc import Iterator
 
@@ -14,7 +15,9 @@ from services.reasoning.ontology import triples_of
 from services.reasoning.prolog import Prolog
 from services.reasoning.rule_terms import rule_for_prolog
 from services.reasoning.settings import ReasoningSettings
-from shared.errors import InternalError, JsonObject, SpargeError
+from shared.errors import InternalError, JsonObject, NotStored, SpargeError, StageUnavailable
+
+log = logging.getLogger("sparge")
 
 _numbers = itertools.count()
 _REWRITE_AFTER = 1000
@@ -50,6 +53,8 @@ class Memory:
     ------
     InternalError
         What was stored is damaged, or does not fit the shipped knowledge.
+    StageUnavailable
+        It cannot be read.
     """
 
     def __init__(self, settings: ReasoningSettings, prolog: Prolog, admission: Admission) -> None:
@@ -61,7 +66,7 @@ class Memory:
         self._admission = admission
         self._journal = Journal(settings.knowledge_dir)
         self._tell_everything()
-        self.refresh()
+        self._take_news()
 
     def close(self) -> None:
         """Let Prolog forget it."""
@@ -72,11 +77,20 @@ class Memory:
     def refresh(self) -> None:
         """Take over what other processes changed; costs one `stat` when there is nothing.
 
+        Where the disk cannot be read, what is known stays as it is.
+
         Raises
         ------
         InternalError
             The stored knowledge is damaged.
         """
+        with self.lock:
+            try:
+                self._take_news()
+            except StageUnavailable as error:
+                log.warning("%s; going on with what was read before", error.message)
+
+    def _take_news(self) -> None:
         with self.lock:
             news = self._journal.news()
             for change in news:
@@ -95,28 +109,32 @@ class Memory:
         ------
         Conflict, InvalidInput, NotFound
             It does not fit what is known; nothing of it is taken.
-        StageUnavailable
+        NotStored
             It cannot be stored.
+        StageUnavailable
+            What is stored cannot be read.
         TooBusy
             Another process is writing for seconds.
         """
         with self.lock:
-            self.refresh()
+            self._take_news()
             self._admission.admit(wanted, self.learned)
         # Waiting for another process is done without the lock: deciding goes on.
         with self._journal.writing(), self.lock:
-            self.refresh()
+            self._take_news()
             admitted = self._admission.admit(wanted, self.learned)
             if self._journal.needs_rewrite():
                 self._journal.rewrite(self.learned.snapshot())
             self._journal.append(admitted)
             self.learned.apply(admitted)
-            if self._journal.records > max(_REWRITE_AFTER, 4 * len(self.learned)):
-                self._journal.rewrite(self.learned.snapshot())
             if admitted.clear:
                 self._tell_everything()
             else:
                 self._tell(admitted)
+            if self._journal.records > max(_REWRITE_AFTER, 4 * len(self.learned)):
+                # The change is stored; that there is no room to tidy up does not undo it.
+                with contextlib.suppress(NotStored):
+                    self._journal.rewrite(self.learned.snapshot())
         return admitted
 
     @contextlib.contextmanager

@@ -8,7 +8,9 @@ timeouts, so the deadline is kept here.
 from __future__ import annotations
 
 import asyncio
-from typing import Any, TypeVar
+from collections.abc import Mapping
+from dataclasses import dataclass
+from typing import Any, Protocol, TypeVar
 
 import httpx
 import orjson
@@ -34,6 +36,31 @@ In = TypeVar("In", bound=Message)
 Out = TypeVar("Out", bound=Message)
 
 MAX_ANSWER_BYTES = 512 * 2**20
+UNPACKED = {"Accept-Encoding": "identity"}
+"""A packed answer could unpack to anything; ours are not text that packs well."""
+
+
+class Answer(Protocol):
+    """What is looked at of an HTTP answer, as in `httpx.Response`."""
+
+    @property
+    def status_code(self) -> int: ...
+
+    @property
+    def headers(self) -> Mapping[str, str]: ...
+
+    @property
+    def content(self) -> bytes: ...
+
+
+@dataclass(frozen=True)
+class _Taken:
+    """An answer that was taken in whole, and is no larger than allowed."""
+
+    url: str
+    status_code: int
+    headers: httpx.Headers
+    content: bytes
 
 
 class StageClient:
@@ -79,16 +106,16 @@ class StageClient:
         try:
             with calling(self._tracer, route, self._http.base_url) as span:
                 async with asyncio.timeout(left_s):
-                    response = await self._http.request(**asked)
-                answered(span, response)
+                    answer = await self._ask(**asked)
+                answered(span, answer.url, answer.status_code)
         except (TimeoutError, httpx.TimeoutException):
             raise DeadlineExceeded(
                 f"the stage {self.service} did not answer in time", stage=self.service
             ) from None
-        except httpx.TransportError as error:
+        except httpx.RequestError as error:
             raise unavailable(self.service, f"cannot be reached ({type(error).__name__})") from None
         try:
-            return read(self.service, route, response)
+            return read(self.service, route, answer)
         except Unauthorized:
             raise unavailable(self.service, "does not take the secret that it is sent") from None
 
@@ -96,11 +123,30 @@ class StageClient:
         """Ask `/health/ready`; a service that does not answer has status `failed`."""
         try:
             async with asyncio.timeout(timeout_s):
-                response = await self._http.get("/health/ready")
-            return Health.model_validate_json(response.content)
-        except (TimeoutError, httpx.HTTPError, ValueError) as error:
+                answer = await self._ask("GET", "/health/ready")
+            return Health.model_validate_json(answer.content)
+        except (TimeoutError, httpx.HTTPError, ValueError, StageUnavailable) as error:
             message = str(error) or type(error).__name__
             return Health(status="failed", service=self.service, details={"error": message})
+
+    async def _ask(
+        self, method: str, url: str, headers: Mapping[str, str] | None = None, **options: Any
+    ) -> _Taken:
+        """Send a request and take the answer, but no more than `MAX_ANSWER_BYTES` of it."""
+        sent = self._http.stream(method, url, headers={**UNPACKED, **(headers or {})}, **options)
+        async with sent as response:
+            if response.headers.get("content-encoding", "identity") != "identity":
+                raise unavailable(self.service, "answered nonsense: packed, unasked")
+            pieces, size = [], 0
+            async for piece in response.aiter_bytes():
+                pieces.append(piece)
+                size += len(piece)
+                if size > MAX_ANSWER_BYTES:
+                    raise unavailable(
+                        self.service, f"answered nonsense: more than {MAX_ANSWER_BYTES} bytes"
+                    )
+        url = str(response.request.url)
+        return _Taken(url, response.status_code, response.headers, b"".join(pieces))
 
 
 def compose(route: Route[In, Out], request: In) -> dict[str, Any]:
@@ -121,26 +167,26 @@ def compose(route: Route[In, Out], request: In) -> dict[str, Any]:
     }
 
 
-def read(service: str, route: Route[In, Out], response: httpx.Response) -> Out:
+def read(service: str, route: Route[In, Out], answer: Answer) -> Out:
     """Return the message of an answer, or raise the error that it is."""
-    check(service, response)
+    check(service, answer)
     try:
-        media_type = response.headers.get("content-type", "")
-        return decode(route.response, response.content, media_type, MAX_ANSWER_BYTES)
+        media_type = answer.headers.get("content-type", "")
+        return decode(route.response, answer.content, media_type, MAX_ANSWER_BYTES)
     except SpargeError as error:
         raise unavailable(service, f"answered nonsense: {error.message}") from None
 
 
-def check(service: str, response: httpx.Response) -> None:
+def check(service: str, answer: Answer) -> None:
     """Raise the error that an answer is, unless it is none."""
-    if response.status_code == 200:
+    if answer.status_code == 200:
         return
     try:
-        error = error_from_envelope(response.status_code, orjson.loads(response.content))
+        error = error_from_envelope(answer.status_code, orjson.loads(answer.content))
     except orjson.JSONDecodeError:
         error = None
     if error is None or isinstance(error, NoSuchPath | MethodNotAllowed):
-        raise unavailable(service, f"answered {response.status_code}; is its URL right?")
+        raise unavailable(service, f"answered {answer.status_code}; is its URL right?")
     if error.status >= 500 and not isinstance(error, StageUnavailable | DeadlineExceeded):
         raise unavailable(service, f"failed: {error.message}")
     error.details.setdefault("stage", service)

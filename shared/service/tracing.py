@@ -102,12 +102,12 @@ def calling(
             raise
 
 
-def answered(span: trace.Span, response: httpx.Response) -> None:
+def answered(span: trace.Span, url: str, status_code: int) -> None:
     """Note what was asked, and the status of the answer."""
-    span.set_attribute("url.full", str(response.request.url))
-    span.set_attribute("http.response.status_code", response.status_code)
-    if response.is_error:
-        span.set_attribute("error.type", str(response.status_code))
+    span.set_attribute("url.full", url)
+    span.set_attribute("http.response.status_code", status_code)
+    if status_code >= 400:
+        span.set_attribute("error.type", str(status_code))
         span.set_status(trace.StatusCode.ERROR)
 
 

@@ -43,7 +43,7 @@ def served(names: Sequence[str], environment: Mapping[str, str]) -> Iterator[dic
         Added to this process's.
     """
     running = {
-        name: Served(f"http://127.0.0.1:{port}", _start(name, port, environment))
+        name: Served(f"http://127.0.0.1:{port}", start_service(name, port, environment))
         for name, port in zip(names, free_ports(len(names)), strict=True)
     }
     try:
@@ -78,7 +78,8 @@ def _ended(process: subprocess.Popen[bytes]) -> int:
         return process.wait()
 
 
-def _start(name: str, port: int, environment: Mapping[str, str]) -> subprocess.Popen[bytes]:
+def start_service(name: str, port: int, environment: Mapping[str, str]) -> subprocess.Popen[bytes]:
+    """Start a service on a port of the loopback; it may still warm up."""
     return subprocess.Popen(
         [
             *(sys.executable, "-m", "uvicorn", "--log-level=warning"),

@@ -123,10 +123,13 @@ def test_a_crash_is_told_and_the_next_file_is_read(reader: FileReader, end: sign
     os.kill(process, signal.SIGSTOP)  # so that it is surely still at work
 
     def crash() -> None:
+        while not reader._lock.locked():
+            time.sleep(0.01)
+        time.sleep(0.2)
         os.kill(process, end)
         os.kill(process, signal.SIGCONT)
 
-    killer = threading.Timer(0.2, crash)
+    killer = threading.Thread(target=crash)
     killer.start()
     with pytest.raises(UnreadableFile, match=f"exit status -{end.value}"):
         reader.read("a.png", SOUND["a.png"], **BESIDE)

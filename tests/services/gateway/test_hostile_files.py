@@ -3,6 +3,7 @@
 from __future__ import annotations
 
 import json
+import tempfile
 import time
 import tracemalloc
 from collections.abc import Iterator
@@ -15,6 +16,7 @@ import pytest
 from services.gateway.app import create_app
 from services.gateway.settings import STAGES, GatewaySettings
 from shared.errors import EmptyCloud
+from tests.support.asking import failed
 from tests.support.hostile_files import ALLOWED, Hostile, hostile_files
 from tests.support.serving import serving
 
@@ -54,6 +56,18 @@ def upload(gateway: httpx.Client, name: str, data: bytes) -> httpx.Response:
         },
         files={"file": (name, data)},
     )
+
+
+def test_an_upload_that_cannot_be_kept_is_told_and_the_next_is_taken(
+    gateway: httpx.Client, monkeypatch: pytest.MonkeyPatch
+) -> None:
+    large = b"1 2\n" * 2**19
+    with monkeypatch.context() as patch:
+        patch.setattr(tempfile, "tempdir", "/proc/full")
+        response = upload(gateway, "a.xyz", large)
+        assert upload(gateway, "a.xyz", large[:1000]).status_code == 400, "small ones are kept here"
+    failed(response, 503, "stage_unavailable", "gateway")
+    assert upload(gateway, "a.xyz", large).status_code == 400
 
 
 @pytest.mark.parametrize(

@@ -174,6 +174,7 @@ def test_too_many_points_are_refused(can: Array) -> None:
     [
         (np.array([[0.1, np.nan, 0.5]]), InvalidInput),
         (np.array([[0.1, np.inf, 0.5]]), InvalidInput),
+        (np.array([[0.1, 1e200, 0.5]]), InvalidInput),
         (np.zeros((3000, 3)), PayloadTooLarge),
     ],
 )

@@ -8,6 +8,7 @@ import os
 import signal
 import subprocess
 import sys
+import tempfile
 import time
 from collections.abc import Iterator
 from concurrent.futures import ThreadPoolExecutor
@@ -20,11 +21,12 @@ from services.reasoning.change import Change, Learned
 from services.reasoning.journal import Journal
 from services.reasoning.reasoner import Reasoner
 from services.reasoning.settings import ReasoningSettings
-from shared.errors import Conflict, InternalError, NotFound, StageUnavailable, TooBusy
+from shared.errors import Conflict, InternalError, NotFound, NotStored, StageUnavailable, TooBusy
 from shared.schemas.route import Nothing
 from shared.schemas.task import DecideRequest, TaskDefinition, TaskName
 from shared.settings import PROJECT_ROOT
 from tests.services.reasoning.objects import PAN
+from tests.support.disk import FailingCalls
 
 
 def task(name: str) -> TaskDefinition:
@@ -117,11 +119,107 @@ def test_a_change_that_cannot_be_stored_is_not_taken(
 
     with monkeypatch.context() as patch:
         patch.setattr(os, "fsync", full)
-        with pytest.raises(StageUnavailable, match="No space left"):
+        with pytest.raises(NotStored, match="No space left"):
             reasoner.add_task(task("second"))
     assert names(reasoner) == names(second) == {"first"}
     reasoner.add_task(task("third"))
     assert names(reasoner) == names(second) == {"first", "third"}
+
+
+@pytest.mark.parametrize("error", [errno.ENOSPC, errno.EROFS, errno.EIO])
+@pytest.mark.parametrize("tidied", [False, True])
+def test_wherever_the_disk_fails_memory_and_disk_agree(
+    reasoner: Reasoner,
+    second: Reasoner,
+    settings: ReasoningSettings,
+    monkeypatch: pytest.MonkeyPatch,
+    error: int,
+    tidied: bool,
+) -> None:
+    """Every system call of a change fails once, and all after it; both processes stay right."""
+    if tidied:
+        monkeypatch.setattr(memory, "_REWRITE_AFTER", 0)
+    calls = FailingCalls(settings.knowledge_dir, monkeypatch)
+    reasoner.add_task(task("first"))
+    expected, refused = {"first"}, 0
+    for number in range(100):
+        name = f"task_{number}"
+        with calls.failing_at(number, error):
+            try:
+                reasoner.add_task(task(name))
+            except NotStored:
+                refused += 1
+            made = calls.made
+        if name in names(reasoner):  # it is only unsure where even undoing it failed
+            expected.add(name)
+        assert names(reasoner) == names(second) == set(stored(settings.knowledge_dir).tasks)
+        assert names(reasoner) == expected
+        for stage in (reasoner, second):
+            assert stage.decide(DecideRequest(task="first", primitives=PAN)).found
+        if made <= number:
+            break
+    assert refused >= 3, "opening the lock, opening the file, writing, syncing"
+    reasoner.add_task(task("last"))
+    assert names(reasoner) == names(second) == {*expected, "last"}
+
+
+def test_no_room_to_tidy_up_does_not_undo_a_change(
+    reasoner: Reasoner, second: Reasoner, monkeypatch: pytest.MonkeyPatch
+) -> None:
+    reasoner.add_task(task("first"))
+    monkeypatch.setattr(memory, "_REWRITE_AFTER", 0)
+
+    def full(*_: object, **__: object) -> None:
+        raise OSError(errno.ENOSPC, "No space left on device")
+
+    for number in range(8):  # more than four times what is known
+        monkeypatch.setattr(tempfile, "mkstemp", full)
+        if number % 2:
+            reasoner.delete_task(TaskName(name="again"))
+        else:
+            reasoner.add_task(task("again"))
+            assert reasoner.decide(DecideRequest(task="again", primitives=PAN)).found
+        assert names(reasoner) == names(second) == {"first", *([] if number % 2 else ["again"])}
+
+
+def test_where_the_disk_cannot_be_read_what_is_known_still_holds(
+    reasoner: Reasoner, monkeypatch: pytest.MonkeyPatch
+) -> None:
+    reasoner.add_task(task("first"))
+    stat = Path.stat
+
+    def broken(path: Path, **options: bool) -> os.stat_result:
+        if path.name == "knowledge.journal":
+            raise OSError(errno.EIO, "Input/output error")
+        return stat(path, **options)
+
+    with monkeypatch.context() as patch:
+        patch.setattr(Path, "stat", broken)
+        assert names(reasoner) == {"first"}
+        assert reasoner.decide(DecideRequest(task="first", primitives=PAN)).found
+        with pytest.raises(StageUnavailable, match="cannot be read"):
+            reasoner.add_task(task("second"))
+    reasoner.add_task(task("second"))
+    assert names(reasoner) == {"first", "second"}
+
+
+def test_a_file_that_is_repaired_in_place_is_read_from_the_beginning(tmp_path: Path) -> None:
+    book, learned = Journal(tmp_path), Learned()
+    for number in range(4):
+        store(book, learned, Change(tasks=(task(f"task_{number}"),)))
+    book.close()
+    file = tmp_path / "knowledge.journal"
+    sound = file.read_bytes()
+    file.write_bytes(sound.replace(b"task_2", b"task_9"))
+    follower, followed = Journal(tmp_path), Learned()
+    for _ in range(2):
+        with pytest.raises(InternalError, match="damaged"):
+            follower.news()
+    file.write_bytes(sound)
+    for change in follower.news():
+        followed.apply(change)
+    follower.close()
+    assert followed == learned
 
 
 WRITER = """
