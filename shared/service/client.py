@@ -101,10 +101,10 @@ class StageClient:
             raise DeadlineExceeded(
                 f"no time was left for the stage {self.service}", stage=self.service
             )
-        asked = compose(route, request)
-        asked["headers"][DEADLINE_HEADER] = f"{left_s:.3f}"
         try:
             with calling(self._tracer, route, self._http.base_url) as span:
+                asked = compose(route, request)  # within the span: its headers name it
+                asked["headers"][DEADLINE_HEADER] = f"{left_s:.3f}"
                 async with asyncio.timeout(left_s):
                     answer = await self._ask(**asked)
                 answered(span, answer.url, answer.status_code)
