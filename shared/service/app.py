@@ -4,7 +4,7 @@ from __future__ import annotations
 
 from collections.abc import AsyncIterator, Awaitable, Callable
 from contextlib import AbstractAsyncContextManager, asynccontextmanager
-from typing import Literal
+from typing import Any, Literal
 
 from fastapi import FastAPI
 from fastapi.responses import JSONResponse, Response
@@ -14,7 +14,7 @@ from pydantic import BaseModel
 from shared import __version__
 from shared.service.admission import Admission
 from shared.service.context import Guard, RequestContext
-from shared.service.envelope import install_error_handlers
+from shared.service.envelope import ErrorEnvelope, install_error_handlers
 from shared.service.exchange import Exchange
 from shared.service.logs import configure_logging, log_exchange
 from shared.service.memory import keep_freed_memory
@@ -22,6 +22,11 @@ from shared.service.telemetry import Metrics
 from shared.service.tracing import exporting, telemetry, tracer_provider
 from shared.settings import ServiceSettings
 
+GUARDED: dict[int | str, dict[str, Any]] = {
+    401: {"model": ErrorEnvelope, "description": "A key or secret is wanted, or another one"},
+    403: {"model": ErrorEnvelope, "description": "The key does not open this"},
+}
+"""Answers of what is not open to everybody."""
 Lifespan = Callable[[FastAPI], AbstractAsyncContextManager[None]]
 
 
@@ -111,11 +116,17 @@ def create_base(
         code = 200 if health.status == "ready" else 503
         return JSONResponse(health.model_dump(), status_code=code)
 
-    @app.get("/version", tags=["operations"], summary="Which build answers")
+    @app.get("/version", tags=["operations"], summary="Which build answers", responses=GUARDED)
     async def version() -> Version:
         return Version(service=name, version=app.version)
 
-    @app.get("/metrics", tags=["operations"], summary="Prometheus metrics", response_class=Response)
+    @app.get(
+        "/metrics",
+        tags=["operations"],
+        summary="Prometheus metrics",
+        response_class=Response,
+        responses=GUARDED,
+    )
     async def expose() -> Response:
         return metrics.expose()
 

@@ -44,7 +44,7 @@ CHECKS = [
     response_headers_conformance,
     response_schema_conformance,
 ]
-BASE = "http://service"
+BASE = "http://127.0.0.1"
 
 
 class Explorer:
