@@ -136,7 +136,7 @@ def test_thinning_leaves_a_point_near_every_point() -> None:
         ({"obstacle_points": np.full((2, 3), np.inf)}, "obstacle_points must", InvalidInput),
         ({"focus": np.ones(3, dtype=bool)}, "focus has 3 entries", InvalidInput),
         ({"focus": np.zeros(len(SCENE.points), dtype=bool)}, "no true entry", InvalidInput),
-        ({"viewpoint": (0, 0, -1e200)}, "viewpoint is", InvalidInput),
+        ({"viewpoint": (0, 0, -1e5)}, "viewpoint is", InvalidInput),
     ],
 )
 def test_bad_input_is_named(
