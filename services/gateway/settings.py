@@ -59,8 +59,8 @@ class GatewaySettings(ServiceSettings):
     kept_explanations, keep_explanations_s : int, float
         GET /grasp/{request_id}/explanation knows so many of the latest, for so long.
     file_memory_bytes : int
-        What reading an uploaded file may take beside the reading process itself; one that
-        unpacks to `max_unpacked_bytes` takes up to two and a half times as much.
+        What reading an uploaded file may take beside the reading process itself; a sound one
+        takes up to four times what it unpacks to.
     file_time_s : float
         Processor time that reading an uploaded file may take.
     approach_distance, retreat_distance : float

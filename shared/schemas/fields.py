@@ -41,7 +41,9 @@ FARTHEST_M = 1e6
 Metres = Annotated[FiniteFloat, Field(ge=-FARTHEST_M, le=FARTHEST_M)]
 """A coordinate or a distance."""
 Vector3 = tuple[Metres, Metres, Metres]
-Direction = Annotated[Vector3, AfterValidator(_points_somewhere)]
+Direction = Annotated[
+    tuple[FiniteFloat, FiniteFloat, FiniteFloat], AfterValidator(_points_somewhere)
+]
 """A vector that points somewhere."""
 Quaternion = Annotated[
     tuple[FiniteFloat, FiniteFloat, FiniteFloat, FiniteFloat], AfterValidator(_points_somewhere)
