@@ -31,6 +31,20 @@ def within(seconds: float) -> Iterator[None]:
         _deadline.reset(token)
 
 
+@contextlib.contextmanager
+def from_now(seconds: float) -> Iterator[None]:
+    """Allow what runs inside so many seconds, whatever was left before: a new request begins.
+
+    A server may start a request in the context of an earlier one of the same connection: asyncio
+    keeps the context in which reading from a socket was resumed.
+    """
+    token = _deadline.set(time.monotonic() + seconds)
+    try:
+        yield
+    finally:
+        _deadline.reset(token)
+
+
 def remaining_s() -> float:
     """Return how many seconds are left; infinite without a deadline, negative after it."""
     return _deadline.get() - time.monotonic()

@@ -7,7 +7,6 @@ never reaches a route.
 from __future__ import annotations
 
 import asyncio
-import contextlib
 import logging
 import math
 import re
@@ -19,7 +18,7 @@ from opentelemetry import trace
 from starlette.datastructures import Headers, MutableHeaders
 from starlette.types import ASGIApp, Message, Receive, Scope, Send
 
-from shared.deadline import DEADLINE_HEADER, within
+from shared.deadline import DEADLINE_HEADER, from_now
 from shared.errors import (
     BodyTooSlow,
     InternalError,
@@ -82,7 +81,7 @@ class RequestContext:
         try:
             self._guard(scope)
             await limited.check_declared_length()
-            with _deadline(headers):
+            with from_now(_seconds_left(headers)):
                 await self._app(scope, limited, send_with_id)
         except Exception as error:
             if not isinstance(error, SpargeError):
@@ -97,11 +96,11 @@ class RequestContext:
             request_id.reset(token)
 
 
-def _deadline(headers: Headers) -> contextlib.AbstractContextManager[None]:
+def _seconds_left(headers: Headers) -> float:
     """Return the time that the request says it has."""
     text = headers.get(DEADLINE_HEADER)
     if text is None:
-        return contextlib.nullcontext()
+        return math.inf
     try:
         seconds = float(text)
     except ValueError:
@@ -111,7 +110,7 @@ def _deadline(headers: Headers) -> contextlib.AbstractContextManager[None]:
             f"{DEADLINE_HEADER} must say how many seconds are left; found {text[:40]!r}",
             field=DEADLINE_HEADER,
         )
-    return within(seconds)
+    return seconds
 
 
 class _Limited:

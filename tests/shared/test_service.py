@@ -6,12 +6,14 @@ import asyncio
 import math
 import socket
 import threading
+import time
 from collections.abc import Callable, Iterator
 from concurrent.futures import ThreadPoolExecutor
 from typing import Any
 
 import httpx
 import numpy as np
+import orjson
 import pytest
 from fastapi import FastAPI
 
@@ -51,7 +53,7 @@ def service(
     return create_service(
         "matching",
         "test",
-        ServiceSettings(max_body_bytes=10_000, **limits),
+        ServiceSettings(**{"max_body_bytes": 10_000, **limits}),
         [bind(SELECT, handler)],
         warm_up=warm_up,
         afterwards=afterwards,
@@ -180,6 +182,20 @@ def test_the_deadline_reaches_the_work_of_a_stage() -> None:
         client.request("POST", "/select", json=BODY)
     assert 3.0 < left[0] <= 3.5
     assert left[1] == math.inf
+
+
+def test_a_request_does_not_inherit_the_deadline_of_the_one_before() -> None:
+    """The body is so large that reading is paused, and resumed while it is answered."""
+    large = b" " * 2_000_000 + orjson.dumps(BODY)
+    with (
+        serving(service(max_body_bytes=10_000_000)) as url,
+        httpx.Client(base_url=url, timeout=60) as client,
+    ):
+        Client(client.request).wait_until_ready(60)
+        client.post("/select", content=large, headers={"X-Request-Timeout": "1"})
+        time.sleep(1.2)
+        for _ in range(3):
+            assert client.post("/select", content=large).status_code == 200
 
 
 def test_a_client_says_how_much_time_is_left() -> None:
