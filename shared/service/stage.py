@@ -4,6 +4,7 @@ from __future__ import annotations
 
 import asyncio
 import logging
+import threading
 from collections.abc import AsyncIterator, Callable, Sequence
 from contextlib import asynccontextmanager
 from dataclasses import dataclass
@@ -73,7 +74,8 @@ class WarmUp:
     async def run_afterwards(self, stopping: asyncio.Event) -> None:
         """Once ready, wait a while, then do what is left: it is not to delay the first requests.
 
-        Nothing more is begun once `stopping` is set.
+        Nothing more is begun once `stopping` is set, and nobody waits for what was: it may
+        compile for a minute, and a service has to stop within seconds.
         """
         await self.run()
         if self._afterwards is None or self._health.status != "ready":
@@ -81,10 +83,14 @@ class WarmUp:
         try:
             await asyncio.wait_for(stopping.wait(), AFTERWARDS_S)
         except TimeoutError:
-            try:
-                await run_in_threadpool(self._afterwards)
-            except Exception as error:
-                self._failed(error)
+            threading.Thread(target=self._do_afterwards, name="warm-up", daemon=True).start()
+
+    def _do_afterwards(self) -> None:
+        assert self._afterwards is not None
+        try:
+            self._afterwards()
+        except Exception as error:
+            self._failed(error)
 
     def _failed(self, error: Exception) -> None:
         log.exception("%s cannot start", self._service)

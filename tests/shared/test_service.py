@@ -156,6 +156,21 @@ def test_what_few_requests_need_is_warmed_up_afterwards(monkeypatch: pytest.Monk
         assert client.request("GET", "/health/ready").status_code == 200
 
 
+def test_nobody_who_ends_waits_for_what_has_begun(monkeypatch: pytest.MonkeyPatch) -> None:
+    monkeypatch.setattr("shared.service.stage.AFTERWARDS_S", 0.0)
+    begun, never = threading.Event(), threading.Event()
+
+    def later() -> None:
+        begun.set()
+        never.wait(20.0)
+
+    with in_process(service(afterwards=later)):
+        assert begun.wait(10.0)
+        started = time.monotonic()
+    assert time.monotonic() - started < 5.0
+    never.set()
+
+
 def test_who_ends_at_once_does_not_wait_for_it() -> None:
     calls: list[int] = []
     with in_process(service(afterwards=lambda: calls.append(1))) as client:
