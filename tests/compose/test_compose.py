@@ -85,7 +85,7 @@ def deployment() -> Iterator[Deployment]:
         deployed.up()
         yield deployed
     finally:
-        deployed.run("down", "--volumes", "--timeout", "5")
+        deployed.run("down", "--volumes", "--rmi", "local", "--timeout", "5")
 
 
 def timeless(answer: dict[str, Any]) -> dict[str, Any]:
