@@ -25,9 +25,9 @@ def require_metres(points: Array, kind: InputKind, field: str) -> None:
     if len(points) == 0:
         return
     sample = points[:: max(1, len(points) // _SAMPLE)]
-    with np.errstate(over="ignore"):
+    with np.errstate(over="ignore", invalid="ignore"):  # depth times scale may be infinite
         low, high = np.percentile(sample, [5, 95], axis=0)
-        extent = float((high - low).max())
+        extent = float(np.nan_to_num(high - low, nan=np.inf, posinf=np.inf).max())
     allowed = MAX_EXTENT_M[kind]
     if extent > allowed:
         remedy = "divide them by 1000"

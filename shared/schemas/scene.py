@@ -8,7 +8,7 @@ import numpy as np
 from numpy.typing import NDArray
 from pydantic import Field, FiniteFloat, model_validator
 
-from shared.schemas.fields import Direction, Indices, Metres, Points, Vector3
+from shared.schemas.fields import FARTHEST_M, Direction, Indices, Metres, Points, Vector3
 from shared.schemas.route import Route
 from shared.wire import ArrayField, Message
 
@@ -53,7 +53,7 @@ class SupportPlane(Message):
     """Unit vector towards the side where the objects are."""
     offset: Metres
     inliers: int
-    residual_mm: FiniteFloat
+    residual_mm: Annotated[FiniteFloat, Field(ge=0, le=FARTHEST_M)]
     """Robust standard deviation of the surface points about the plane."""
 
 

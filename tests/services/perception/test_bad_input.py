@@ -123,6 +123,7 @@ def test_depth_with_the_wrong_scale() -> None:
     for depth, scale in (
         (np.rint(shot.depth * 1000).astype(np.uint16), 1.0),
         (shot.depth * 1000, None),
+        (shot.depth, 1e308),  # the points are infinite, the depth is not
     ):
         with pytest.raises(WrongUnits, match="depth_scale") as caught:
             STAGE.perceive(
