@@ -1,6 +1,6 @@
 # Two commands matter: `make run` and `make test`. `make help` lists the rest.
 .DEFAULT_GOAL := help
-.PHONY: help setup run serve test load soak compose-load compose-test check fuzz bench experiments catalogue train-grasps lock clean
+.PHONY: help setup dev run serve test load soak compose-load compose-test check fuzz bench experiments catalogue train-grasps lock clean
 
 SAMPLE ?= experiments/samples/bottle.npz
 TASK ?= pouring
@@ -12,31 +12,34 @@ help:  ## List the targets
 setup:  ## System libraries and .venv from the hashed lock
 	@./setup.sh
 
+dev:  ## The same with what tests, style and documentation need
+	@./setup.sh dev
+
 run: setup  ## The main job on a bundled view: region, grasps, explanation, timings, a picture
 	@.venv/bin/sparge grasp $(SAMPLE) --task $(TASK) --picture $(PICTURE)
 
 serve: setup  ## The embedded backend on http://127.0.0.1:8000
 	@.venv/bin/sparge serve
 
-test: setup  ## All tests, on every core (four at most)
+test: dev  ## All tests, on every core (four at most)
 	@.venv/bin/python -m pytest --numprocesses=auto --maxprocesses=4 --dist=worksteal
 
-load: setup  ## The embedded backend under load: 1 to 64 clients, open loop; five minutes
+load: dev  ## The embedded backend under load: 1 to 64 clients, open loop; five minutes
 	@.venv/bin/python -m tests.load
 
-soak: setup  ## Ten minutes of load on the embedded backend with an eye on its memory
+soak: dev  ## Ten minutes of load on the embedded backend with an eye on its memory
 	@.venv/bin/python -m tests.load --clients --rates --soak 600
 
-compose-load: setup  ## The same load on the images, on a Docker engine
+compose-load: dev  ## The same load on the images, on a Docker engine
 	@docker compose up --detach --build --wait
 	@.venv/bin/python -m tests.load --url http://127.0.0.1:8000 --compose $(notdir $(CURDIR)); \
 	status=$$?; docker compose down; exit $$status
 
-compose-test: setup  ## The images on a real Docker engine: build, ask, scale, kill, stop
+compose-test: dev  ## The images on a real Docker engine: build, ask, scale, kill, stop
 	@docker info >/dev/null 2>&1 || { echo "compose-test: no Docker engine answers" >&2; exit 1; }
 	@SPARGE_COMPOSE_TEST=1 .venv/bin/python -m pytest tests/compose
 
-check: setup  ## ruff and mypy --strict
+check: dev  ## ruff and mypy --strict
 	@.venv/bin/ruff check .
 	@.venv/bin/ruff format --check .
 	@.venv/bin/mypy
@@ -47,12 +50,12 @@ FUZZ_LIMIT ?= 2h
 FUZZED = tests/contract/test_conformance.py tests/services/gateway/test_file_reader.py \
 	tests/services/gateway/test_hostile_files.py
 
-fuzz: setup  ## Made-up requests to every service and damaged files, CASES of each; two hours at most
+fuzz: dev  ## Made-up requests to every service and damaged files, CASES of each; two hours at most
 	@echo "FUZZ_SEED=$(FUZZ_SEED)"
 	@SPARGE_FUZZ_CASES=$(CASES) SPARGE_FUZZ_SEED=$(FUZZ_SEED) timeout $(FUZZ_LIMIT) \
 		.venv/bin/python -m pytest --numprocesses=auto --maxprocesses=4 --dist=worksteal $(FUZZED)
 
-bench: setup  ## Reasoning under load: memory over 100,000 requests, decision times; half an hour
+bench: dev  ## Reasoning under load: memory over 100,000 requests, decision times; half an hour
 	@.venv/bin/python -m tests.bench
 
 EXPERIMENTS ?= regions primitives grasps timing extension robustness shapes tuning demo
@@ -68,7 +71,7 @@ OBJECTS ?= 260
 TRIAL_PORT ?= 8399
 TORCH ?= torch==2.13.0 --extra-index-url https://download.pytorch.org/whl/cpu
 
-train-grasps: setup  ## The scorer of grasps anew: trials in physics, then training
+train-grasps: dev  ## The scorer of grasps anew: trials in physics, then training
 	@.venv/bin/pip install --quiet --require-hashes -r requirements-training.lock
 	@.venv/bin/pip install --quiet $(TORCH)
 	@SPARGE_EXECUTION_WORKERS=2 .venv/bin/sparge serve --port $(TRIAL_PORT) --log-level warning & \
@@ -77,7 +80,7 @@ train-grasps: setup  ## The scorer of grasps anew: trials in physics, then train
 		--wait 300 --workers 2 --objects $(OBJECTS)
 	@.venv/bin/python -m services.grasp_proposal.train $(TRIALS)
 
-lock: setup  ## Write the dependency locks anew from pyproject.toml
+lock: dev  ## Write the dependency locks anew from pyproject.toml
 	@docker/lock.sh
 
 clean:  ## Remove what make made

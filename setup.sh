@@ -1,8 +1,12 @@
 #!/bin/sh
 # Set this checkout up: system libraries, then .venv from the hashed lock. Run by `make setup`.
+# `./setup.sh dev` adds what tests, style, documentation and a browser to test with need.
 # Does nothing when everything is already there.
 set -eu
 cd "$(dirname "$0")"
+
+want=${1:-run}
+case $want in run | dev) ;; *) printf 'usage: setup.sh [dev]\n' >&2; exit 2 ;; esac
 
 say() { printf 'setup: %s\n' "$*"; }
 fail() { printf 'setup: %s\n' "$*" >&2; exit 1; }
@@ -31,6 +35,9 @@ has_library libusb-1.0.so.0 || missing="$missing libusb-1.0-0"
 has_library libGL.so.1 || missing="$missing libgl1"
 has_library libEGL.so.1 || missing="$missing libegl1"
 has_library libgomp.so.1 || missing="$missing libgomp1"
+if [ "$want" = dev ]; then
+    command -v chromium >/dev/null 2>&1 || missing="$missing chromium"
+fi
 
 if [ -n "$missing" ]; then
     install="apt-get install -y --no-install-recommends$missing"
@@ -53,17 +60,27 @@ and try again."
     [ -n "$python" ] || fail "SPaRGE needs Python 3.11 or 3.12; found none"
 fi
 
-# The virtual environment, made anew when the lock or the interpreter changed.
+# The virtual environment, made anew when a lock or the interpreter changed. What `dev` installed
+# serves `run` as well.
+uv() {
+    # uv doesn't read pip's settings; an index of one's own is the one that matters.
+    index=$(.venv/bin/python -m pip config get global.index-url 2>/dev/null || true)
+    UV_DEFAULT_INDEX="${UV_DEFAULT_INDEX:-${index:-https://pypi.org/simple}}" \
+        .venv/bin/uv pip --quiet --no-progress "$@" --python .venv/bin/python
+}
 stamp=.venv/.installed
-wanted=$({ cat requirements.lock pyproject.toml; "$python" -V; pwd; } | cksum)
-if [ "$(cat "$stamp" 2>/dev/null)" != "$wanted" ]; then
-    say "installing the locked dependencies into .venv ($("$python" -V))"
-    rm -rf .venv
-    "$python" -m venv .venv
+state() { { echo "$1"; cat requirements*.lock pyproject.toml; "$python" -V; pwd; } | cksum; }
+found=$(cat "$stamp" 2>/dev/null || true)
+if [ "$found" != "$(state "$want")" ] && [ "$found" != "$(state dev)" ]; then
+    lock=requirements.lock
+    [ "$want" = run ] || lock=requirements-dev.lock
+    say "installing $lock into .venv ($("$python" -V))"
+    [ "$found" = "$(state run)" ] || rm -rf .venv
+    [ -d .venv ] || "$python" -m venv .venv
     .venv/bin/python -m pip install --quiet --disable-pip-version-check \
-        --no-deps --require-hashes -r requirements.lock
-    .venv/bin/python -m pip install --quiet --disable-pip-version-check \
-        --no-deps --no-build-isolation --editable .
-    printf '%s\n' "$wanted" >"$stamp"
+        --no-deps --require-hashes -r requirements-setup.lock
+    uv install --no-deps --require-hashes -r "$lock"
+    uv install --no-deps --no-build-isolation --editable .
+    state "$want" >"$stamp"
     say "done"
 fi

@@ -1,20 +1,27 @@
 #!/bin/sh
 # Write the hashed dependency locks anew from pyproject.toml: `make lock`.
-#   requirements.lock           everything for development and the embedded backend
-#   requirements-training.lock  the same versions plus what retraining models needs
+#   requirements-setup.lock     what setup.sh installs first: uv, and what builds this package
+#   requirements.lock           the embedded backend and every command of the README
+#   requirements-dev.lock       the same versions plus what tests, style and docs need
+#   requirements-training.lock  the same again plus what retraining models needs
 #   docker/locks/SERVICE.txt    what the image of one service installs, same versions
 set -eu
 cd "$(dirname "$0")/.."
 services="perception primitive-recovery reasoning grasp-proposal matching execution gateway"
 compile() {
     output=$1; shift
-    CUSTOM_COMPILE_COMMAND="make lock" .venv/bin/pip-compile --quiet --generate-hashes \
-        --allow-unsafe --strip-extras --no-emit-index-url --no-emit-find-links \
-        --no-emit-trusted-host --output-file="$output" "$@" pyproject.toml
+    .venv/bin/uv pip compile --quiet --generate-hashes --universal --python-version 3.11 \
+        --custom-compile-command "make lock" --output-file="$output" "$@"
 }
-extras=$(for each in $services tracing cli annotate experiments dev; do printf ' --extra %s' "$each"; done)
-compile requirements.lock $extras
-compile requirements-training.lock $extras --extra train --constraint requirements.lock
+extras() { for each in "$@"; do printf ' --extra %s' "$each"; done; }
+run=$(extras $services tracing cli annotate view grpc mcp experiments)
+dev=$(extras docs dev)
+printf 'editables\nhatchling\nuv\n' | compile requirements-setup.lock -
+compile requirements.lock $run pyproject.toml
+compile requirements-dev.lock $run $dev --constraint requirements.lock pyproject.toml
+compile requirements-training.lock $run $dev --extra train --constraint requirements-dev.lock \
+    pyproject.toml
 for each in $services; do
-    compile "docker/locks/$each.txt" --extra "$each" --extra tracing --constraint requirements.lock
+    compile "docker/locks/$each.txt" --extra "$each" --extra tracing \
+        --constraint requirements.lock pyproject.toml
 done
