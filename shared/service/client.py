@@ -153,7 +153,8 @@ def compose(route: Route[In, Out], request: In) -> dict[str, Any]:
     """Return the arguments of an httpx client's `request` that ask `route`."""
     path = route.path
     for name in type(request).model_fields:
-        path = path.replace(f"{{{name}}}", str(getattr(request, name)))
+        if (place := f"{{{name}}}") in path:
+            path = path.replace(place, str(getattr(request, name)))
     headers = inject({"Accept": NPZ, REQUEST_ID_HEADER: request_id.get()})
     if route.method != "POST":
         fields = request.model_dump(mode="json", exclude_none=True)

@@ -2,6 +2,7 @@
 
 from __future__ import annotations
 
+import functools
 from typing import Any, get_args
 
 import numpy as np
@@ -22,12 +23,7 @@ class Message(BaseModel):
     @classmethod
     def array_fields(cls) -> tuple[str, ...]:
         """Return the names of the fields that hold arrays."""
-        return tuple(
-            name
-            for name, field in cls.model_fields.items()
-            if any(isinstance(mark, ArrayField) for mark in field.metadata)
-            or _mentions_array(field.annotation)
-        )
+        return _array_fields(cls)
 
     def __eq__(self, other: object) -> bool:
         if type(other) is not type(self):
@@ -37,6 +33,16 @@ class Message(BaseModel):
         )
 
     __hash__ = None  # type: ignore[assignment]
+
+
+@functools.cache
+def _array_fields(kind: type[Message]) -> tuple[str, ...]:
+    return tuple(
+        name
+        for name, field in kind.model_fields.items()
+        if any(isinstance(mark, ArrayField) for mark in field.metadata)
+        or _mentions_array(field.annotation)
+    )
 
 
 def _mentions_array(annotation: Any) -> bool:

@@ -10,6 +10,7 @@ from __future__ import annotations
 
 import io
 import math
+import re
 import zipfile
 import zlib
 from collections.abc import Mapping
@@ -90,15 +91,8 @@ def read_npy(content: bytes, name: str) -> NDArray[Any]:
     MalformedRequest
         Not a plain numeric array, or not as large as it claims.
     """
-    stream = io.BytesIO(content)
     try:
-        version = np.lib.format.read_magic(stream)
-        read_header = (
-            np.lib.format.read_array_header_1_0
-            if version == (1, 0)
-            else np.lib.format.read_array_header_2_0
-        )
-        shape, fortran_order, dtype = read_header(stream)
+        shape, fortran_order, dtype, start = _usual_header(content) or _any_header(content)
     except (ValueError, SyntaxError, RecursionError, MemoryError, TypeError) as error:
         raise MalformedRequest(f"array {name!r} has no valid npy header: {error}") from None
     if dtype.itemsize == 0:
@@ -107,7 +101,6 @@ def read_npy(content: bytes, name: str) -> NDArray[Any]:
         raise MalformedRequest(
             f"array {name!r} holds pickled objects; only plain numbers are accepted"
         )
-    start = stream.tell()
     count = math.prod(shape)
     if min(shape, default=1) < 0 or count * dtype.itemsize != len(content) - start:
         raise MalformedRequest(
@@ -121,6 +114,41 @@ def read_npy(content: bytes, name: str) -> NDArray[Any]:
         return flat.reshape(shape, order="F" if fortran_order else "C")
     except (ValueError, TypeError) as error:  # more dimensions than NumPy has, lengths beyond it
         raise MalformedRequest(f"array {name!r} cannot be held: {error}") from None
+
+
+Header = tuple[tuple[int, ...], bool, np.dtype[Any], int]
+"""Shape, Fortran order, type of the values, and where they start."""
+
+_USUAL = re.compile(
+    rb"\x93NUMPY\x01\x00(?P<length>..)\{'descr': '(?P<descr>[<|][biuf]\d)', "
+    rb"'fortran_order': (?P<fortran>True|False), "
+    rb"'shape': \((?P<shape>(?:\d{1,18}, ?)*(?:\d{1,18})?)\), \} *\n",
+    re.DOTALL,
+)
+
+
+def _usual_header(content: bytes) -> Header | None:
+    """Read a header as NumPy and we write it for plain numbers; None when it is another one.
+
+    NumPy's own reader lets Python's parser read every header, 45 us instead of 3.
+    """
+    found = _USUAL.match(content)
+    if found is None or found.end() != 10 + int.from_bytes(found["length"], "little"):
+        return None
+    shape = tuple(int(each) for each in found["shape"].split(b",") if each.strip())
+    return shape, found["fortran"] == b"True", np.dtype(found["descr"].decode()), found.end()
+
+
+def _any_header(content: bytes) -> Header:
+    stream = io.BytesIO(content)
+    version = np.lib.format.read_magic(stream)
+    read_header = (
+        np.lib.format.read_array_header_1_0
+        if version == (1, 0)
+        else np.lib.format.read_array_header_2_0
+    )
+    shape, fortran_order, dtype = read_header(stream)
+    return shape, fortran_order, dtype, stream.tell()
 
 
 def write_npz(arrays: Mapping[str, ArrayLike], *, compress: bool = False) -> bytes:

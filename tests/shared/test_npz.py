@@ -13,7 +13,7 @@ from hypothesis import strategies as st
 from hypothesis.extra import numpy as hnp
 
 from shared.errors import MalformedRequest, PayloadTooLarge
-from shared.wire.npz import MAX_MEMBERS, read_npz, write_npz
+from shared.wire.npz import MAX_MEMBERS, read_npy, read_npz, write_npz
 
 LIMIT = 10**6
 
@@ -52,6 +52,22 @@ def test_what_numpy_saves_is_read(rng: np.random.Generator) -> None:
     np.testing.assert_array_equal(held["points"], points)
     np.testing.assert_array_equal(held["fortran"], fortran)
     assert held["scalar"].item() == 1e-4
+
+
+@given(
+    hnp.arrays(
+        st.sampled_from(["<f4", ">f8", "<i2", "|u1", "|b1", "<c16", "<U3"]),
+        hnp.array_shapes(min_dims=0, max_dims=4, min_side=0, max_side=4),
+    ),
+    st.booleans(),
+)
+def test_headers_are_read_as_numpy_reads_them(array: np.ndarray, is_fortran: bool) -> None:
+    stream = io.BytesIO()
+    np.save(stream, np.asfortranarray(array) if is_fortran else array)
+    stream.seek(0)
+    expected, found = np.load(stream), read_npy(stream.getvalue(), "a")
+    assert (found.shape, found.dtype) == (expected.shape, expected.dtype)
+    np.testing.assert_array_equal(found, expected)
 
 
 def test_the_same_arrays_give_the_same_bytes() -> None:
