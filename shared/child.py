@@ -17,7 +17,7 @@ import subprocess
 import sys
 import threading
 import traceback
-from collections.abc import Callable, Mapping, Sequence
+from collections.abc import Callable, Iterator, Mapping, Sequence
 
 from shared.errors import InternalError, SpargeError, error_from_envelope
 
@@ -26,6 +26,7 @@ _READY, _ANSWER, _FAILURE = b"ready", b"answer", b"failure"
 Frame = bytes | memoryview
 _LENGTH = struct.Struct("<Q")
 _BUFFER_BYTES = 2**20
+_FEW = 16
 _LAST_WORDS_S = 5.0
 
 log = logging.getLogger("sparge")
@@ -71,7 +72,7 @@ class Child:
         self._pipe, theirs = socket.socketpair()
         for end in (self._pipe, theirs):
             end.setsockopt(socket.SOL_SOCKET, socket.SO_SNDBUF, _BUFFER_BYTES)
-        with theirs:
+        with theirs, _closed_on_error(self._pipe):
             self._process = subprocess.Popen(
                 [sys.executable, "-m", module, str(theirs.fileno()), *arguments],
                 pass_fds=[theirs.fileno()],
@@ -91,8 +92,19 @@ class Child:
     def alive(self) -> bool:
         return self._process.poll() is None
 
-    def ask(self, *frames: bytes, limit_s: float) -> list[bytes]:
+    def ask(
+        self, *frames: bytes, limit_s: float, max_answer_bytes: int = sys.maxsize
+    ) -> list[bytes]:
         """Return the frames of the answer to a request.
+
+        Parameters
+        ----------
+        *frames : bytes
+            As many as the process expects.
+        limit_s : float
+            The process is ended when it takes longer.
+        max_answer_bytes : int
+            It is ended as well when a frame of its answer is larger.
 
         Raises
         ------
@@ -101,7 +113,7 @@ class Child:
         ChildTooSlow
             No answer within `limit_s` seconds.
         ChildEnded
-            It died.
+            It died, or answered nonsense.
         """
         late = threading.Event()
 
@@ -114,11 +126,14 @@ class Child:
         try:
             for frame in frames:
                 _send(self._pipe, frame)
-            kind = _receive(self._pipe)
-            answer = [_receive(self._pipe) for _ in range(int(_receive(self._pipe)))]
-        except (OSError, ValueError):
+            kind, count = _receive(self._pipe, _FEW), _receive(self._pipe, _FEW)
+            answer = [_receive(self._pipe, max_answer_bytes) for _ in range(int(count[:2]))]
+        except OSError:
             exit_status = self._end()
             raise ChildTooSlow if late.is_set() else ChildEnded(exit_status) from None
+        except ValueError:  # nonsense
+            self.stop()
+            raise ChildEnded(self._process.returncode) from None
         finally:
             watch.cancel()
         if kind != _ANSWER:
@@ -159,8 +174,18 @@ def serve(descriptor: int, respond: Callable[..., Sequence[Frame]], frames: int)
                 kind, answer = _answer(respond, [_receive(pipe) for _ in range(frames)])
                 for frame in (kind, str(len(answer)).encode(), *answer):
                     _send(pipe, frame)
+                del answer, frame  # they may be large
         except ConnectionError:
             return
+
+
+@contextlib.contextmanager
+def _closed_on_error(pipe: socket.socket) -> Iterator[None]:
+    try:
+        yield
+    except BaseException:
+        pipe.close()
+        raise
 
 
 def _send(pipe: socket.socket, frame: Frame) -> None:
@@ -168,8 +193,10 @@ def _send(pipe: socket.socket, frame: Frame) -> None:
     pipe.sendall(frame)
 
 
-def _receive(pipe: socket.socket) -> bytes:
+def _receive(pipe: socket.socket, most: int = sys.maxsize) -> bytes:
     (length,) = _LENGTH.unpack(_receive_exactly(pipe, _LENGTH.size))
+    if length > most:
+        raise ValueError(f"a frame of {length} bytes, allowed are {most}")
     return bytes(_receive_exactly(pipe, length))
 
 

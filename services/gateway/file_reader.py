@@ -20,6 +20,8 @@ READ_ELSEWHERE = (".ply", ".pcd", ".xyz", ".png")
 """npz is not: its reader is our own, on zlib alone, and reads whole bodies in this process."""
 PASSED_ON = ("PATH", "LD_LIBRARY_PATH", "LANG", "TMPDIR")
 """Of the environment; keys and passwords in it are no business of the other process."""
+HEADERS = 2**16
+"""What an answer may have beside what the file unpacks to."""
 TUNED = {
     "OPENBLAS_NUM_THREADS": "1",
     "MALLOC_ARENA_MAX": "1",  # keep what is freed, as shared/service/memory.py does here
@@ -102,7 +104,8 @@ class FileReader:
         if not self._lock.acquire(timeout=wait_s):
             raise TooBusy("other files are still being read; ask again", stage="gateway")
         try:
-            return self._running().ask(question, data, limit_s=wait_s)
+            most = self._settings.max_unpacked_bytes + HEADERS
+            return self._running().ask(question, data, limit_s=wait_s, max_answer_bytes=most)
         except ChildTooSlow:
             raise DeadlineExceeded(
                 f"the file could not be read within {wait_s:g} s", stage="gateway"

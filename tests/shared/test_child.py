@@ -57,3 +57,10 @@ def test_who_takes_too_long_is_ended(child: Child) -> None:
 def test_what_does_not_start_is_told() -> None:
     with pytest.raises(ChildEnded):
         Child("tests.support.no_such_module", environment=dict(os.environ))
+
+
+def test_no_memory_is_taken_for_what_it_boasts_of() -> None:
+    boaster = Child("tests.support.odd_child", "boast", environment=dict(os.environ))
+    with pytest.raises(ChildEnded):
+        boaster.ask(b"x", limit_s=60, max_answer_bytes=2**20)
+    assert not boaster.alive

@@ -1,9 +1,11 @@
-"""A child process that does what it is told: `python -m tests.support.odd_child FD`."""
+"""A child process that does what it is told: `python -m tests.support.odd_child FD [boast]`."""
 
 from __future__ import annotations
 
 import os
 import signal
+import socket
+import struct
 import sys
 import time
 
@@ -24,5 +26,18 @@ def respond(what: bytes) -> list[bytes]:
     return [what, b"", what]
 
 
+def boast(descriptor: int) -> None:
+    """Announce an answer larger than any memory."""
+    with socket.socket(fileno=descriptor) as pipe:
+        for frame in (b"ready", b"answer", b"1"):
+            pipe.sendall(struct.pack("<Q", len(frame)) + frame)
+        pipe.sendall(struct.pack("<Q", 2**62))
+        while pipe.recv(100):
+            pass
+
+
 if __name__ == "__main__":
-    serve(int(sys.argv[1]), respond, frames=1)
+    if "boast" in sys.argv:
+        boast(int(sys.argv[1]))
+    else:
+        serve(int(sys.argv[1]), respond, frames=1)
