@@ -93,12 +93,14 @@ class LabelledView:
         )
 
     def arrays(self) -> Arrays:
-        """Return the arrays that make the view's file."""
+        """Return the arrays that make the view's file; POST /grasp takes it as it is."""
         return {
             "depth": self.depth,
             "label": self.label,
             "regions": np.packbits(self.regions, axis=-1),
             "K": self.intrinsics,
+            "intrinsics": self.intrinsics,
+            "depth_scale": np.array(DEPTH_SCALE),
             "tasks": np.array(self.tasks, dtype=np.str_),
             "T_cam_obj": self.camera_from_object,
             "T_cam_world": self.camera_from_world,
