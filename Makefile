@@ -1,6 +1,6 @@
 # Two commands matter: `make run` and `make test`. `make help` lists the rest.
 .DEFAULT_GOAL := help
-.PHONY: help setup dev run serve test load soak compose-load compose-test check fuzz bench experiments catalogue train-grasps lock clean
+.PHONY: help setup dev run serve test load soak compose-load compose-test check fuzz bench experiments catalogue train-grasps docs docs-serve pictures lock clean
 
 SAMPLE ?= experiments/samples/bottle.npz
 TASK ?= pouring
@@ -79,6 +79,16 @@ train-grasps: dev  ## The scorer of grasps anew: trials in physics, then trainin
 	.venv/bin/python -m experiments.trials $(TRIALS) --url http://127.0.0.1:$(TRIAL_PORT) \
 		--wait 300 --workers 2 --objects $(OBJECTS)
 	@.venv/bin/python -m services.grasp_proposal.train $(TRIALS)
+
+docs: dev  ## The documentation site, out/site/index.html; a broken link fails it
+	@NO_MKDOCS_2_WARNING=1 .venv/bin/mkdocs build --quiet -f docs/site/mkdocs.yml
+	@echo out/site/index.html
+
+docs-serve: dev  ## The same on http://127.0.0.1:8100, built anew when a page changes
+	@NO_MKDOCS_2_WARNING=1 .venv/bin/mkdocs serve --quiet -f docs/site/mkdocs.yml -a 127.0.0.1:8100
+
+pictures: dev  ## The pictures of the documentation anew, docs/images
+	@.venv/bin/python -m experiments.pictures
 
 lock: dev  ## Write the dependency locks anew from pyproject.toml
 	@docker/lock.sh
