@@ -60,8 +60,8 @@ and try again."
     [ -n "$python" ] || fail "SPaRGE needs Python 3.11 or 3.12; found none"
 fi
 
-# The virtual environment, made anew when a lock or the interpreter changed. What `dev` installed
-# serves `run` as well.
+# The virtual environment: made anew when the interpreter or its place changed, brought to the
+# lock when that did. What `dev` installed serves `run` as well.
 uv() {
     # uv doesn't read pip's settings; an index of one's own is the one that matters.
     index=$(.venv/bin/python -m pip config get global.index-url 2>/dev/null || true)
@@ -69,17 +69,17 @@ uv() {
         .venv/bin/uv pip --quiet --no-progress "$@" --python .venv/bin/python
 }
 stamp=.venv/.installed
-state() { { echo "$1"; cat requirements*.lock pyproject.toml; "$python" -V; pwd; } | cksum; }
+base="$("$python" -V) in $PWD"
+state() { echo "$base: $1 $(cat requirements*.lock pyproject.toml | cksum)"; }
 found=$(cat "$stamp" 2>/dev/null || true)
 if [ "$found" != "$(state "$want")" ] && [ "$found" != "$(state dev)" ]; then
     lock=requirements.lock
     [ "$want" = run ] || lock=requirements-dev.lock
     say "installing $lock into .venv ($("$python" -V))"
-    [ "$found" = "$(state run)" ] || rm -rf .venv
-    [ -d .venv ] || "$python" -m venv .venv
+    case $found in "$base: "*) ;; *) rm -rf .venv && "$python" -m venv .venv ;; esac
     .venv/bin/python -m pip install --quiet --disable-pip-version-check \
         --no-deps --require-hashes -r requirements-setup.lock
-    uv install --no-deps --require-hashes -r "$lock"
+    uv sync --require-hashes "$lock"
     uv install --no-deps --no-build-isolation --editable .
     state "$want" >"$stamp"
     say "done"

@@ -14,10 +14,10 @@ compile() {
         --custom-compile-command "make lock" --output-file="$output" "$@"
 }
 extras() { for each in "$@"; do printf ' --extra %s' "$each"; done; }
-run=$(extras $services tracing cli annotate view grpc mcp experiments)
+run=$(extras setup $services tracing cli annotate view grpc mcp experiments)
 dev=$(extras docs dev)
-printf 'editables\nhatchling\nuv\n' | compile requirements-setup.lock -
 compile requirements.lock $run pyproject.toml
+printf 'editables\nhatchling\nuv\n' | compile requirements-setup.lock --constraint requirements.lock -
 compile requirements-dev.lock $run $dev --constraint requirements.lock pyproject.toml
 compile requirements-training.lock $run $dev --extra train --constraint requirements-dev.lock \
     pyproject.toml

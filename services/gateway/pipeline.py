@@ -10,8 +10,10 @@ import asyncio
 import time
 from collections.abc import Mapping
 from dataclasses import dataclass, field
+from typing import NamedTuple
 
 import numpy as np
+from cachetools import TTLCache
 
 from services.gateway.metrics import GraspMetrics
 from services.gateway.request import GraspRequest
@@ -41,6 +43,10 @@ from shared.service import StageClient
 
 CHECKS = "checks"
 """Whether the task and the gripper are known, among the timings; it runs beside perception."""
+REMEMBER_S = 5.0
+REMEMBERED = 1024
+_Named = tuple[str, str, str]
+"""Task, version of the reasoning, set of rules."""
 
 
 @dataclass(frozen=True)
@@ -56,6 +62,12 @@ class Outcome:
     timings_ms: dict[str, float]
 
 
+class _Opening(NamedTuple):
+    """How far a gripper opens; None for one without fingers."""
+
+    metres: float | None
+
+
 @dataclass
 class _Run:
     """One request under way: what each stage took."""
@@ -63,7 +75,7 @@ class _Run:
     stages: Mapping[str, StageClient]
     metrics: GraspMetrics
     deadline_s: float
-    timings_ms: dict[str, float] = field(default_factory=dict)
+    timings_ms: dict[str, float] = field(default_factory=lambda: {CHECKS: 0.0})
     gripper_opening: float | None = None
     """Of the gripper asked for, metres; None for one without fingers."""
 
@@ -91,6 +103,9 @@ class Pipeline:
         self._stages = stages
         self._settings = settings
         self._metrics = metrics
+        # What was known a moment ago is not asked for again: the stages check it anyway.
+        self._known_tasks: TTLCache[_Named, bool] = TTLCache(REMEMBERED, REMEMBER_S)
+        self._openings: TTLCache[str, _Opening] = TTLCache(REMEMBERED, REMEMBER_S)
 
     async def run(self, request: GraspRequest) -> Outcome:
         """Return what every stage found.
@@ -149,35 +164,45 @@ class Pipeline:
         return scene
 
     async def _check_names(self, run: _Run, request: GraspRequest) -> None:
+        await asyncio.gather(self._check_task(run, request), self._check_gripper(run, request))
+
+    async def _check_task(self, run: _Run, request: GraspRequest) -> None:
         question = request.parameters
+        rule_set = question.rule_set or self._settings.rule_set
+        asked = (question.task, question.reasoning, rule_set)
+        if self._known_tasks.get(asked):
+            return
         await run.call(  # without parts it only says whether the task is known
             DECIDE,
             DecideRequest(
                 task=question.task,
                 reasoning=question.reasoning,
-                rule_set=question.rule_set or self._settings.rule_set,
+                rule_set=rule_set,
                 primitives=(),
                 explain=False,
             ),
             CHECKS,
         )
-        listed = await run.call(LIST_GRIPPERS, Nothing(), CHECKS)
-        grippers = sorted(gripper.name for gripper in listed.grippers)
-        run.gripper_opening = next(
-            (
-                each.max_opening
+        self._known_tasks[asked] = True
+
+    async def _check_gripper(self, run: _Run, request: GraspRequest) -> None:
+        gripper = request.parameters.gripper
+        opening = self._openings.get(gripper)
+        if opening is None:
+            listed = await run.call(LIST_GRIPPERS, Nothing(), CHECKS)
+            openings = {
+                each.name: _Opening(each.max_opening if each.kind == "parallel" else None)
                 for each in listed.grippers
-                if each.kind == "parallel" and each.name == question.gripper
-            ),
-            None,
-        )
-        gripper = question.gripper
-        if gripper not in grippers:
-            raise UnknownGripper(
-                f"unknown gripper {gripper!r}; known are {', '.join(grippers)}",
-                found=gripper,
-                known=grippers,
-            )
+            }
+            self._openings.update(openings)
+            if gripper not in openings:
+                raise UnknownGripper(
+                    f"unknown gripper {gripper!r}; known are {', '.join(sorted(openings))}",
+                    found=gripper,
+                    known=sorted(openings),
+                )
+            opening = openings[gripper]
+        run.gripper_opening = opening.metres
 
     async def _recover(
         self, run: _Run, request: GraspRequest, scene: PerceiveResponse

@@ -14,6 +14,7 @@ EXTRAS: dict[str, dict[str, str]] = {
     "matching": {},
     "execution": {"pillow": "PIL.Image", "pybullet": "pybullet"},
     "gateway": {
+        "cachetools": "cachetools",
         "pillow": "PIL.Image",
         "python-multipart": "python_multipart",
         "python-neo-lzf": "lzf",

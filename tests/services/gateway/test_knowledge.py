@@ -7,7 +7,7 @@ from collections.abc import Iterator
 import pytest
 
 from shared.client import Sparge
-from shared.errors import InvalidInput
+from shared.errors import InvalidInput, UnknownTask
 from shared.schemas.knowledge import (
     ASK_QUESTION,
     EXPORT_KNOWLEDGE,
@@ -41,6 +41,18 @@ def forgetful(backend: Client) -> Iterator[Client]:
         "POST", "/knowledge", content=b"", headers=TURTLE, params={"replace": "true"}
     )
     assert done.status_code == 200
+
+
+def test_a_task_that_is_gone_is_gone_at_once(forgetful: Client) -> None:
+    """Though the gateway remembers for a moment which names are known."""
+    sparge = Sparge(forgetful.request)
+    task = {"name": "rinsing", "requires": ["contain"], "grasp": ["wrap_grasp"]}
+    assert forgetful.request("POST", "/tasks", json=task).status_code == 200
+    assert sparge.grasp(sample_view("bottle"), "rinsing", max_grasps=0).answer.found
+    assert forgetful.request("DELETE", "/tasks/rinsing").status_code == 200
+    with pytest.raises(UnknownTask) as caught:
+        sparge.grasp(sample_view("bottle"), "rinsing", max_grasps=0)
+    assert "pouring" in caught.value.details["known"]
 
 
 def test_a_taught_rule_decides(forgetful: Client) -> None:
