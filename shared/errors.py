@@ -21,6 +21,11 @@ class SpargeError(Exception):
         One or two sentences for a person.
     **details
         JSON-compatible facts for a program (field, found, allowed, ...).
+
+    Attributes
+    ----------
+    request_id : str or None
+        Of the request that was answered with it, where a client raises it.
     """
 
     code: ClassVar[str] = "internal"
@@ -35,6 +40,7 @@ class SpargeError(Exception):
         super().__init__(message)
         self.message = message
         self.details: JsonObject = details
+        self.request_id: str | None = None
 
     def envelope(self, request_id: str) -> JsonObject:
         """Return the contract's JSON body of this error."""
@@ -221,4 +227,7 @@ def error_from_envelope(status: int, body: object) -> SpargeError | None:
     kind = SpargeError.by_code.get(code)
     if kind is None:
         kind = InvalidInput if 400 <= status < 500 else InternalError
-    return kind(message, **(details if isinstance(details, dict) else {}))
+    rebuilt = kind(message, **(details if isinstance(details, dict) else {}))
+    identifier = error.get("request_id")
+    rebuilt.request_id = identifier if isinstance(identifier, str) else None
+    return rebuilt

@@ -9,11 +9,12 @@ from matplotlib.axes import Axes
 from matplotlib.patches import Patch
 from numpy.typing import NDArray
 
-from experiments.framework.asking import VERSION_NAMES, Asked, mapped
+from experiments.framework.asking import VERSION_NAMES, VERSIONS, Asked, mapped
 from experiments.framework.experiment import Context, Plot
 from experiments.framework.plots import new_figure
 from experiments.framework.views import ShownView, ViewSet, load
 from shared.client import GraspResult
+from shared.schemas.task import Version
 
 HIT, MISSED, WRONG, REST = (0.23, 0.56, 0.36), (0.95, 0.77, 0.25), (0.82, 0.27, 0.23), (0.72,) * 3
 _COLUMNS, _MARGIN_PX = 4, 12
@@ -27,7 +28,7 @@ def draw_examples(context: Context, views: ViewSet, asked: Sequence[Asked]) -> l
     The backend is asked for them again.
     """
     plots = []
-    for version, name in VERSION_NAMES.items():
+    for version in VERSIONS:
         own = [
             each
             for each in asked
@@ -37,12 +38,12 @@ def draw_examples(context: Context, views: ViewSet, asked: Sequence[Asked]) -> l
         steps = np.unique(np.linspace(0, len(own) - 1, 2 * _COLUMNS).round().astype(int))
         chosen = [own[k] for k in steps] if own else []
         if chosen:
-            plots.append(_contact_sheet(context, views, chosen, version, name))
+            plots.append(_contact_sheet(context, views, chosen, version))
     return plots
 
 
 def _contact_sheet(
-    context: Context, views: ViewSet, chosen: Sequence[Asked], version: str, name: str
+    context: Context, views: ViewSet, chosen: Sequence[Asked], version: Version
 ) -> Plot:
     files = {(file.object_name, str(file.number)): file for file in views.files}
 
@@ -82,7 +83,8 @@ def _contact_sheet(
     )
     return Plot(
         f"examples-{version}",
-        f"{name} on {views.name}: examples at equal steps from the best answer to the worst.",
+        f"{VERSION_NAMES[version]} on {views.name}: examples at equal steps from the best answer "
+        "to the worst.",
         figure,
     )
 

@@ -26,9 +26,13 @@ def ask_parts(sparge: Sparge, view: ShownView, method: Method) -> GraspResult:
     SpargeError
         What the backend answered with.
     """
-    parameters = {"recovery": PUBLISHED} if method == "ems" else {}
     return sparge.grasp(
-        view.arrays(), view.tasks[0], method=method, max_grasps=0, explain=False, **parameters
+        view.arrays(),
+        view.tasks[0],
+        method=method,
+        recovery=PUBLISHED if method == "ems" else None,
+        max_grasps=0,
+        explain=False,
     )
 
 

@@ -13,7 +13,7 @@ from experiments.timing.cases import Case
 from shared.client import Sparge
 from shared.errors import SpargeError
 from shared.schemas.route import Nothing
-from shared.schemas.task import LIST_TASKS
+from shared.schemas.task import LIST_TASKS, Version
 
 COMPARABLE = ("primitive_recovery", "reasoning", "matching")
 """Our stages that do what the thesis's total covers: no perception, no grasp detection."""
@@ -104,7 +104,7 @@ def measure(context: Context, cases: Sequence[Case], tasks: int, describe: str) 
     return [each for each in timed if each is not None]
 
 
-def _time(sparge: Sparge, case: Case, version: str, tasks: int) -> Timed | None:
+def _time(sparge: Sparge, case: Case, version: Version, tasks: int) -> Timed | None:
     """Return what a request takes; None where the view is refused."""
     arrays = case.view.arrays()
     started = time.perf_counter()

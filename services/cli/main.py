@@ -84,7 +84,8 @@ def grasp(
 ) -> None:
     """Find where and how to grasp the object in FILE for a task."""
     from services.cli.ask import Question, ask
-    from services.cli.show import headline, show
+    from services.cli.show import show
+    from shared.client import headline
 
     console = Console(stderr=True)
     question = Question(

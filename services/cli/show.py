@@ -6,6 +6,7 @@ from rich import box
 from rich.console import Console
 from rich.table import Table
 
+from shared.client import headline
 from shared.schemas.answer import GraspAnswer
 
 
@@ -24,16 +25,6 @@ def show(answer: GraspAnswer, console: Console) -> None:
         console.print(answer.explanation.text, highlight=False)
     spent = "  ".join(f"{name} {value:.0f}" for name, value in answer.timings_ms.items())
     console.print(f"[bold]Time[/bold] (ms)  {spent}", highlight=False)
-
-
-def headline(answer: GraspAnswer) -> str:
-    """Return the answer in one line."""
-    question = f"{answer.task} ({answer.reasoning})"
-    if answer.region is None:
-        return f"{question}: no part of this object fits"
-    parts = " and ".join(map(str, answer.region.primitive_ids))
-    label = f" ({answer.region.affordance})" if answer.region.affordance else ""
-    return f"{question}: hold part {parts}{label}, confidence {answer.region.confidence:.2f}"
 
 
 def _primitives(answer: GraspAnswer) -> Table:
