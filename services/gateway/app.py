@@ -47,7 +47,7 @@ from shared.schemas.task import ADD_TASK, DELETE_TASK, LIST_AFFORDANCES, LIST_TA
 from shared.service import StageClient
 from shared.service.admission import Admission
 from shared.service.app import Health, create_base
-from shared.service.balance import BalancedTransport
+from shared.service.connections import CONNECT_S, network
 from shared.service.openapi import describe
 from shared.service.request_id import request_id
 from shared.service.secret import secret_headers
@@ -55,9 +55,6 @@ from shared.service.serve import serve
 from shared.service.server_timing import SERVER_TIMING, server_timing
 from shared.wire import JSON, NPZ
 
-LIMITS = httpx.Limits(max_connections=256, max_keepalive_connections=64, keepalive_expiry=3.0)
-"""Of connections to stages. An idle one is given up before uvicorn does, after 5 s: a request on a
-connection that is just being closed is lost."""
 FORM = "multipart/form-data"
 _HEALTH_TIMEOUT_S = 2.0
 _PASSED_ON: tuple[Route[Any, Any], ...] = (
@@ -205,17 +202,13 @@ def _connect(
     return {
         name: httpx.AsyncClient(
             base_url=url or f"http://{name.replace('_', '-')}",
-            timeout=None,
+            timeout=httpx.Timeout(None, connect=CONNECT_S),
             headers=headers,
-            transport=_network() if url else transports[name],
+            transport=network() if url else transports[name],
         )
         for name in STAGES
         for url in [settings.stage_url(name)]
     }
-
-
-def _network() -> httpx.AsyncBaseTransport:
-    return BalancedTransport(httpx.AsyncHTTPTransport(limits=LIMITS))
 
 
 def _forward(

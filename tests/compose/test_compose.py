@@ -189,6 +189,24 @@ def test_a_stage_killed_in_mid_request_is_named_and_comes_back(deployment: Deplo
     wait_for(lambda: deployment.grasp().status_code == 200)
 
 
+def test_a_host_that_vanishes_is_named_before_the_deadline(deployment: Deployment) -> None:
+    """Without its network a container closes no connection and refuses none."""
+    (container,) = deployment.containers("perception")
+    (network,) = deployment.inspect(container)["NetworkSettings"]["Networks"]
+    assert deployment.grasp().status_code == 200  # a connection is kept
+    docker = ["docker", "network"]
+    subprocess.check_call([*docker, "disconnect", network, container])
+    try:
+        started = time.monotonic()
+        answer = deployment.grasp()
+        assert time.monotonic() - started < DEADLINE_S / 2
+        assert answer.status_code == 503
+        assert answer.json()["error"]["details"]["stage"] == "perception"
+    finally:
+        subprocess.check_call([*docker, "connect", "--alias", "perception", network, container])
+    wait_for(lambda: deployment.grasp().status_code == 200)
+
+
 def test_knowledge_survives_the_containers(deployment: Deployment) -> None:
     known = httpx.get(f"{deployment.url}/affordances", timeout=30).json()["affordances"]
     name = known[0]["name"]
