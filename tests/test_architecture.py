@@ -77,8 +77,8 @@ def _service(path: list[str]) -> str | None:
 
 def _speaks_http(path: list[str]) -> bool:
     """A service's `app`, and in the gateway what chains and documents the others."""
-    beside_app = ("pipeline", "openapi", "knowledge", "__main__")
-    return path[-1] == "app" or path[1:] in [["gateway", each] for each in beside_app]
+    beside_app = ("pipeline", "openapi", "knowledge", "body", "grasping", "kserve", "__main__")
+    return path[-1] == "app" or path[1:3] in [["gateway", each] for each in beside_app]
 
 
 def _layer(path: list[str]) -> int:

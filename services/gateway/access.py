@@ -14,9 +14,12 @@ from shared.errors import Forbidden, InvalidInput, RateLimited, Unauthorized
 
 AsgiScope = MutableMapping[str, Any]
 
-_OPEN = ("/health/live", "/health/ready")
+_OPEN = (
+    *("/health/live", "/health/ready"),
+    *("/v2/health/live", "/v2/health/ready", "/v2/models/sparge/ready"),
+)
 _KNOWLEDGE = ("/tasks", "/rules", "/affordances", "/knowledge")
-_GRASP = ("/grasp", "/execute")
+_GRASP = ("/grasp", "/execute", "/v2/models/sparge/infer")
 
 
 def needed_scope(method: str, path: str) -> Scope | None:

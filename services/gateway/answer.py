@@ -2,6 +2,8 @@
 
 from __future__ import annotations
 
+from collections.abc import Mapping
+
 import numpy as np
 from numpy.typing import NDArray
 
@@ -13,6 +15,7 @@ from shared.schemas.answer import Grasp, GraspAnswer, LabelledPrimitive, Scene
 from shared.schemas.grasp import Pose
 from shared.schemas.primitive import superquadric_rows
 from shared.schemas.task import Reason
+from shared.wire import Message
 from shared.wire.npz import write_npz
 
 
@@ -59,22 +62,25 @@ def compose(
     )
 
 
-def to_npz(answer: GraspAnswer, outcome: Outcome) -> bytes:
-    """Return the contract's npz: per-point arrays of the INPUT, primitives, grasps, report."""
+def arrays(answer: GraspAnswer, outcome: Outcome) -> dict[str, NDArray[np.generic]]:
+    """Return the contract's arrays: per INPUT point, the primitives, the grasps (G, 9)."""
     scene, assigned = outcome.scene, outcome.assigned
     point_primitive = np.full(scene.input_points, -1, dtype=np.int16)
     point_region = np.zeros(scene.input_points, dtype=np.bool_)
     point_primitive[scene.object_indices] = assigned.point_primitive
     point_region[scene.object_indices] = assigned.point_region
-    return write_npz(
-        {
-            "point_primitive": point_primitive,
-            "point_region": point_region,
-            "primitives": superquadric_rows(answer.primitives),
-            "grasps": outcome.grasps,
-            "report": np.frombuffer(answer.model_dump_json().encode(), dtype=np.uint8),
-        }
-    )
+    return {
+        "point_primitive": point_primitive,
+        "point_region": point_region,
+        "primitives": superquadric_rows(answer.primitives),
+        "grasps": outcome.grasps,
+    }
+
+
+def to_npz(held: Mapping[str, NDArray[np.generic]], report: Message) -> bytes:
+    """Return the contract's npz: its arrays, and the JSON answer as `report`."""
+    text = np.frombuffer(report.model_dump_json().encode(), dtype=np.uint8)
+    return write_npz({**held, "report": text})
 
 
 def _grasp(row: NDArray[np.float64], up: NDArray[np.float64], settings: GatewaySettings) -> Grasp:

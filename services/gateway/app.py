@@ -3,7 +3,6 @@
 from __future__ import annotations
 
 import asyncio
-import time
 from collections.abc import AsyncIterator, Awaitable, Callable, Mapping
 from contextlib import asynccontextmanager
 from typing import Any
@@ -11,24 +10,24 @@ from typing import Any
 import httpx
 from fastapi import FastAPI, Request
 from fastapi.responses import Response
-from opentelemetry import trace
 from starlette.concurrency import run_in_threadpool
-from starlette.datastructures import UploadFile
 from starlette.middleware.cors import CORSMiddleware
 
 from services.gateway import answer
-from services.gateway import request as requests
 from services.gateway.access import Access
+from services.gateway.body import parse_body
 from services.gateway.file_reader import FileReader
+from services.gateway.formats import render
+from services.gateway.grasping import Answered, Grasping
 from services.gateway.knowledge import DOCUMENTED as KNOWLEDGE_ROUTES
 from services.gateway.knowledge import serve_knowledge
+from services.gateway.kserve import describe_kserve, error_body, serve_kserve
 from services.gateway.memory import Memory
 from services.gateway.metrics import GraspMetrics
 from services.gateway.openapi import describe_grasp, describe_knowledge
 from services.gateway.pipeline import Pipeline
+from services.gateway.request import GraspRequest
 from services.gateway.settings import STAGES, GatewaySettings
-from shared.deadline import within
-from shared.errors import InvalidInput, StageUnavailable, UnsupportedMediaType
 from shared.schemas.answer import EXPLANATION, KeptExplanation, RequestName
 from shared.schemas.execution import EXECUTE
 from shared.schemas.grasp import LIST_GRIPPERS
@@ -45,17 +44,13 @@ from shared.schemas.rule import (
 )
 from shared.schemas.task import ADD_TASK, DELETE_TASK, LIST_AFFORDANCES, LIST_TASKS
 from shared.service import StageClient
-from shared.service.admission import Admission
 from shared.service.app import Health, create_base
 from shared.service.connections import CONNECT_S, network
 from shared.service.openapi import describe
-from shared.service.request_id import request_id
 from shared.service.secret import secret_headers
 from shared.service.serve import serve
-from shared.service.server_timing import SERVER_TIMING, server_timing
 from shared.wire import JSON, NPZ
 
-FORM = "multipart/form-data"
 _HEALTH_TIMEOUT_S = 2.0
 _PASSED_ON: tuple[Route[Any, Any], ...] = (
     LIST_TASKS,
@@ -132,6 +127,7 @@ def create_app(
         lifespan=lifespan,
         ready=ready,
         guard=Access(settings),
+        error_body=error_body,
     )
     stages = {name: StageClient(name, http, app.state.tracer) for name, http in clients.items()}
     metrics = GraspMetrics(app.state.metrics.registry)
@@ -145,37 +141,19 @@ def create_app(
             expose_headers=["X-Request-ID", "Retry-After"],
         )
 
-    admission: Admission = app.state.admission
+    grasping = Grasping(pipeline, settings, app.state.admission, memory, metrics)
+
+    async def parse(request: Request) -> GraspRequest:
+        return await parse_body(request, settings, files)
 
     @app.post("/grasp", operation_id="post_grasp", response_class=Response)
     async def grasp(request: Request) -> Response:
-        with within(settings.deadline_s):
-            await request.body()  # who sends slowly takes no place
-            async with admission.turn():
-                return await answer_grasp(request)
+        async def write(answered: Answered) -> Response:
+            return await _write(answered, request, settings)
 
-    async def answer_grasp(request: Request) -> Response:
-        started = time.perf_counter()
-        parsed = await _parse(request, settings, files)
-        parsing_ms = 1e3 * (time.perf_counter() - started)
-        span = trace.get_current_span()
-        span.set_attribute("sparge.task", parsed.parameters.task)
-        span.set_attribute("sparge.reasoning", parsed.parameters.reasoning)
-        outcome = await pipeline.run(parsed)
-        timings_ms = {
-            "parsing": parsing_ms,
-            **outcome.timings_ms,
-            "total": 1e3 * (time.perf_counter() - started),
-        }
-        composed = answer.compose(outcome, parsed, settings, request_id.get(), timings_ms)
-        memory.keep(composed)
-        metrics.answered(composed.reasoning, composed.found, composed.reason, len(composed.grasps))
-        span.set_attribute("sparge.found", composed.found)
-        headers = {SERVER_TIMING: server_timing(timings_ms)}
-        if NPZ in request.headers.get("accept", JSON):
-            body = await run_in_threadpool(answer.to_npz, composed, outcome)
-            return Response(body, media_type=NPZ, headers=headers)
-        return Response(composed.model_dump_json(), media_type=JSON, headers=headers)
+        return await grasping.respond(request, parse, write)
+
+    serve_kserve(app, grasping, ready, settings)
 
     async def explanation(asked: RequestName) -> KeptExplanation:
         return memory.recall(asked.request_id)
@@ -187,6 +165,7 @@ def create_app(
     describe(app, (EXPLANATION, *_PASSED_ON, *KNOWLEDGE_ROUTES))
     describe_knowledge(app)
     describe_grasp(app)
+    describe_kserve(app)
     return app
 
 
@@ -222,33 +201,13 @@ def _forward(
     return answer_from_stage
 
 
-async def _parse(
-    request: Request, settings: GatewaySettings, files: FileReader
-) -> requests.GraspRequest:
-    media_type = request.headers.get("content-type", "").split(";", 1)[0].strip().lower()
-    query = dict(request.query_params)
-    limit = settings.max_unpacked_bytes
-    if media_type == JSON:
-        return await run_in_threadpool(requests.from_json, await request.body(), query)
-    if media_type == NPZ:
-        return await run_in_threadpool(requests.from_npz, await request.body(), query, limit)
-    if media_type == FORM:
-        try:
-            async with request.form(max_files=1, max_fields=32) as form:
-                upload = form.get("file")
-                if not isinstance(upload, UploadFile):
-                    raise InvalidInput("the form has no file field named 'file'", field="file")
-                fields = {name: text for name, text in form.items() if isinstance(text, str)}
-                body = await upload.read()
-        except OSError as error:  # what is over a megabyte lies in a temporary file meanwhile
-            raise StageUnavailable(
-                f"the gateway has no place to keep the upload ({error.strerror})", stage="gateway"
-            ) from error
-        return await run_in_threadpool(
-            requests.from_form, upload.filename or "", body, fields, query, files.read
+async def _write(answered: Answered, request: Request, settings: GatewaySettings) -> Response:
+    """Write an answer in the format and the content type that were asked for."""
+    composed, outcome, parameters = answered.answer, answered.outcome, answered.parameters
+    rendered = render(composed, outcome.grasps, parameters, outcome.gripper, settings)
+    if NPZ in request.headers.get("accept", JSON):
+        held = {**answered.arrays(), "grasps": rendered.grasps}
+        return Response(
+            await run_in_threadpool(answer.to_npz, held, rendered.answer), media_type=NPZ
         )
-    raise UnsupportedMediaType(
-        f"content type {media_type or 'none'!r} is not read here; send {JSON}, {NPZ} or {FORM}",
-        found=media_type,
-        allowed=[JSON, NPZ, FORM],
-    )
+    return Response(rendered.answer.model_dump_json(), media_type=JSON)

@@ -8,6 +8,8 @@ from fastapi import FastAPI
 
 from services.gateway.request import GraspParameters
 from shared.schemas.answer import GraspAnswer
+from shared.schemas.formats import GraspNetAnswer, MoveItAnswer, PoseArrayAnswer
+from shared.schemas.point_cloud2 import PointCloud2
 from shared.schemas.scene import View
 from shared.service.openapi import REFERENCE, add_models, error_responses
 from shared.wire import JSON, NPZ
@@ -15,8 +17,11 @@ from shared.wire import JSON, NPZ
 _NPZ_BODY = "arrays: points (N, 3), or depth (H, W), intrinsics (3, 3), depth_scale; others ignored"
 _NPZ_ANSWER = (
     "arrays: point_primitive (N,) int16, point_region (N,) bool, primitives (P, 12), "
-    "grasps (G, 9): x y z qx qy qz qw width score, report: the JSON answer as UTF-8"
+    "grasps (G, 9): x y z qx qy qz qw width score (with format=graspnet (G, 17)), "
+    "report: the JSON answer as UTF-8"
 )
+_ANSWERS = (GraspAnswer, MoveItAnswer, GraspNetAnswer, PoseArrayAnswer)
+"""By `format`."""
 
 
 def describe_grasp(app: FastAPI) -> None:
@@ -27,7 +32,7 @@ def describe_grasp(app: FastAPI) -> None:
         document = plain()
         operation = document["paths"]["/grasp"]["post"]
         if "requestBody" not in operation:
-            add_models(document, [GraspParameters, GraspAnswer, View])
+            add_models(document, [GraspParameters, View, PointCloud2, *_ANSWERS])
             operation.update(_operation())
         return document
 
@@ -62,6 +67,7 @@ def _operation() -> dict[str, Any]:
     arrays = View.model_json_schema()["properties"]
     del arrays["viewpoint"]
     fields = {**arrays, **parameters}
+    cloud = PointCloud2.model_json_schema(ref_template=REFERENCE)["properties"]
     return {
         "summary": "Where and how to grasp the object in this view for a task",
         "parameters": [
@@ -77,7 +83,7 @@ def _operation() -> dict[str, Any]:
         "requestBody": {
             "required": True,
             "content": {
-                JSON: {"schema": {"type": "object", "properties": fields}},
+                JSON: {"schema": {"type": "object", "properties": {**fields, **cloud}}},
                 NPZ: {"schema": {"type": "string", "format": "binary", "description": _NPZ_BODY}},
                 "multipart/form-data": {"schema": _form(parameters)},
             },
@@ -86,7 +92,14 @@ def _operation() -> dict[str, Any]:
             "200": {
                 "description": "An answer; found = false is one, and says why",
                 "content": {
-                    JSON: {"schema": {"$ref": "#/components/schemas/GraspAnswer"}},
+                    JSON: {
+                        "schema": {
+                            "anyOf": [
+                                {"$ref": f"#/components/schemas/{answer.__name__}"}
+                                for answer in _ANSWERS
+                            ]
+                        }
+                    },
                     NPZ: {
                         "schema": {"type": "string", "format": "binary", "description": _NPZ_ANSWER}
                     },

@@ -10,11 +10,11 @@ import asyncio
 import time
 from collections.abc import Mapping
 from dataclasses import dataclass, field
-from typing import NamedTuple
 
 import numpy as np
 from cachetools import TTLCache
 
+from services.gateway.formats import require_fitting
 from services.gateway.metrics import GraspMetrics
 from services.gateway.request import GraspRequest
 from services.gateway.settings import GatewaySettings
@@ -30,6 +30,7 @@ from shared.schemas.grasp import (
     RegionResponse,
     SelectRequest,
 )
+from shared.schemas.gripper import Gripper, ParallelGripper
 from shared.schemas.primitive import (
     RECOVER,
     RecoverRequest,
@@ -59,13 +60,8 @@ class Outcome:
     assigned: RegionResponse
     proposed: ProposeResponse | None
     grasps: np.ndarray
+    gripper: Gripper
     timings_ms: dict[str, float]
-
-
-class _Opening(NamedTuple):
-    """How far a gripper opens; None for one without fingers."""
-
-    metres: float | None
 
 
 @dataclass
@@ -76,8 +72,6 @@ class _Run:
     metrics: GraspMetrics
     deadline_s: float
     timings_ms: dict[str, float] = field(default_factory=lambda: {CHECKS: 0.0})
-    gripper_opening: float | None = None
-    """Of the gripper asked for, metres; None for one without fingers."""
 
     async def call(
         self, route: Route[Request, Response], request: Request, timed_as: str | None = None
@@ -105,7 +99,7 @@ class Pipeline:
         self._metrics = metrics
         # What was known a moment ago is not asked for again: the stages check it anyway.
         self._known_tasks: TTLCache[_Named, bool] = TTLCache(REMEMBERED, REMEMBER_S)
-        self._openings: TTLCache[str, _Opening] = TTLCache(REMEMBERED, REMEMBER_S)
+        self._grippers: TTLCache[str, Gripper] = TTLCache(REMEMBERED, REMEMBER_S)
 
     async def run(self, request: GraspRequest) -> Outcome:
         """Return what every stage found.
@@ -122,9 +116,9 @@ class Pipeline:
             self._metrics.spent(run.timings_ms)
 
     async def _chain(self, run: _Run, request: GraspRequest) -> Outcome:
-        scene = await self._perceive(run, request)
+        gripper, scene = await self._perceive(run, request)
         recovered = await self._recover(run, request, scene)
-        decision = await self._decide(run, request, scene, recovered)
+        decision = await self._decide(run, request, scene, recovered, gripper)
         chosen = decision.region.primitive_ids if decision.region else ()
         assigned = await run.call(
             FIND_REGION,
@@ -138,9 +132,11 @@ class Pipeline:
         proposed, grasps = None, np.empty((0, 9))
         if assigned.point_region.any() and request.parameters.max_grasps > 0:
             proposed, grasps = await self._grasp(run, request, scene, recovered, assigned)
-        return Outcome(scene, recovered, decision, assigned, proposed, grasps, run.timings_ms)
+        return Outcome(
+            scene, recovered, decision, assigned, proposed, grasps, gripper, run.timings_ms
+        )
 
-    async def _perceive(self, run: _Run, request: GraspRequest) -> PerceiveResponse:
+    async def _perceive(self, run: _Run, request: GraspRequest) -> tuple[Gripper, PerceiveResponse]:
         parameters = request.parameters
         view = {name: getattr(request.view, name) for name in type(request.view).model_fields}
         perceive = run.call(
@@ -154,17 +150,21 @@ class Pipeline:
         )
         # Names are checked while perception works, so that a typing error is
         # told at once and whatever else the request holds.
-        checked, scene = await asyncio.gather(
+        gripper, scene = await asyncio.gather(
             self._check_names(run, request), perceive, return_exceptions=True
         )
-        for result in (checked, scene):
-            if isinstance(result, BaseException):
-                raise result
-        assert isinstance(scene, PerceiveResponse)
-        return scene
+        if isinstance(gripper, BaseException):
+            raise gripper
+        if isinstance(scene, BaseException):
+            raise scene
+        return gripper, scene
 
-    async def _check_names(self, run: _Run, request: GraspRequest) -> None:
-        await asyncio.gather(self._check_task(run, request), self._check_gripper(run, request))
+    async def _check_names(self, run: _Run, request: GraspRequest) -> Gripper:
+        """Return the gripper that was asked for, if task and format are possible with it."""
+        _, gripper = await asyncio.gather(
+            self._check_task(run, request), self._check_gripper(run, request)
+        )
+        return gripper
 
     async def _check_task(self, run: _Run, request: GraspRequest) -> None:
         question = request.parameters
@@ -185,24 +185,22 @@ class Pipeline:
         )
         self._known_tasks[asked] = True
 
-    async def _check_gripper(self, run: _Run, request: GraspRequest) -> None:
-        gripper = request.parameters.gripper
-        opening = self._openings.get(gripper)
-        if opening is None:
+    async def _check_gripper(self, run: _Run, request: GraspRequest) -> Gripper:
+        name = request.parameters.gripper
+        gripper = self._grippers.get(name)
+        if gripper is None:
             listed = await run.call(LIST_GRIPPERS, Nothing(), CHECKS)
-            openings = {
-                each.name: _Opening(each.max_opening if each.kind == "parallel" else None)
-                for each in listed.grippers
-            }
-            self._openings.update(openings)
-            if gripper not in openings:
+            grippers = {each.name: each for each in listed.grippers}
+            self._grippers.update(grippers)
+            if name not in grippers:
                 raise UnknownGripper(
-                    f"unknown gripper {gripper!r}; known are {', '.join(sorted(openings))}",
-                    found=gripper,
-                    known=sorted(openings),
+                    f"unknown gripper {name!r}; known are {', '.join(sorted(grippers))}",
+                    found=name,
+                    known=sorted(grippers),
                 )
-            opening = openings[gripper]
-        run.gripper_opening = opening.metres
+            gripper = grippers[name]
+        require_fitting(request.parameters, gripper)
+        return gripper
 
     async def _recover(
         self, run: _Run, request: GraspRequest, scene: PerceiveResponse
@@ -229,7 +227,9 @@ class Pipeline:
         request: GraspRequest,
         scene: PerceiveResponse,
         recovered: RecoverResponse,
+        gripper: Gripper,
     ) -> DecideResponse:
+        opening = gripper.max_opening if isinstance(gripper, ParallelGripper) else None
         return await run.call(
             DECIDE,
             DecideRequest(
@@ -239,7 +239,7 @@ class Pipeline:
                 primitives=recovered.primitives,
                 joints=recovered.joints,
                 plane=scene.plane,
-                gripper_opening=run.gripper_opening,
+                gripper_opening=opening,
                 explain=request.parameters.explain,
             ),
         )

@@ -8,17 +8,22 @@ from typing import Annotated, Any, Self
 import orjson
 from pydantic import Field, model_validator
 
-from shared.errors import MalformedRequest
+from shared.errors import InvalidInput, MalformedRequest
 from shared.schemas.fields import TaskText, Vector3
+from shared.schemas.formats import Format
+from shared.schemas.point_cloud2 import PointCloud2, cloud_points, is_point_cloud2
 from shared.schemas.primitive import EmsParameters, Method
+from shared.schemas.ros import RosTime
 from shared.schemas.scene import InputKind, View
 from shared.schemas.task import RuleSet, Version
+from shared.schemas.urdf import TCP, RosName
 from shared.wire import Message
 from shared.wire.codec import read_json_object, validate
-from shared.wire.files import CloudFile, read_cloud_file
+from shared.wire.files import DEFAULT_MAX_UNPACKED_BYTES, CloudFile, read_cloud_file
 
 _ARRAYS = ("points", "depth", "intrinsics", "depth_scale")
-_JSON_VALUES = ("viewpoint", "target", "recovery", "intrinsics", "depth_scale")
+_JSON_VALUES = ("viewpoint", "target", "recovery", "stamp", "intrinsics", "depth_scale")
+_EXAMPLES = {"recovery": '{"eps": 0.02, ...}', "stamp": '{"sec": 12, "nanosec": 0}'}
 
 
 class GraspParameters(Message):
@@ -41,11 +46,28 @@ class GraspParameters(Message):
     """Parameters of the method `ems`, instead of the backend's own."""
     explain: bool = True
     frame_id: Annotated[str, Field(min_length=1, max_length=128)] = "camera"
+    format: Format = "sparge"
+    """Which tool's format the answer is in."""
+    pose_of: RosName | None = None
+    """Of `moveit` and `pose_array`: whose pose a grasp is, `tcp` or a link of the gripper's.
+    Without it, the link that MoveIt expects, and the tool centre point."""
+    stamp: RosTime | None = None
+    """When the view was taken, for the headers of `moveit` and `pose_array`; without it, that of
+    the PointCloud2, or 0."""
 
     @model_validator(mode="after")
     def _parameters_of_the_method(self) -> Self:
         if self.recovery is not None and self.method == "parts":
             raise ValueError("recovery holds parameters of the method ems, but method is parts")
+        return self
+
+    @model_validator(mode="after")
+    def _pose_of_the_format(self) -> Self:
+        if self.pose_of not in (None, TCP) and self.format in ("sparge", "graspnet"):
+            raise ValueError(
+                f"format={self.format} gives poses of the tool centre point; pose_of is for "
+                "format=moveit and format=pose_array"
+            )
         return self
 
 
@@ -56,11 +78,34 @@ class GraspRequest(Message):
     view: View
 
 
-def from_json(body: bytes, query: Mapping[str, str]) -> GraspRequest:
-    """Read `{"points": [[x, y, z], ...], parameters...}`."""
+def from_json(
+    body: bytes,
+    query: Mapping[str, str],
+    max_unpacked_bytes: int = DEFAULT_MAX_UNPACKED_BYTES,
+) -> GraspRequest:
+    """Read `{"points": [[x, y, z], ...], parameters...}`, or a PointCloud2 beside parameters."""
     fields = read_json_object(body)
+    if is_point_cloud2(fields):
+        fields = _from_point_cloud2(fields, max_unpacked_bytes)
     arrays = {name: fields.pop(name) for name in _ARRAYS if name in fields}
     return _request(arrays, {**fields, **_typed(query)})
+
+
+def _from_point_cloud2(fields: dict[str, Any], max_bytes: int) -> dict[str, Any]:
+    """Return points and parameters in place of a message; frame and time are the header's."""
+    both = [name for name in _ARRAYS if name in fields]
+    if both:
+        raise InvalidInput(
+            f"the body is a PointCloud2 and holds {', '.join(both)} as well; give one of them",
+            field=both[0],
+        )
+    held = {name: fields[name] for name in PointCloud2.model_fields if name in fields}
+    cloud = validate(PointCloud2, held)
+    said: dict[str, Any] = {"stamp": cloud.header.stamp.model_dump()}
+    if cloud.header.frame_id:
+        said["frame_id"] = cloud.header.frame_id
+    parameters = {name: value for name, value in fields.items() if name not in held}
+    return {**said, **parameters, "points": cloud_points(cloud, max_bytes)}
 
 
 def from_npz(body: bytes, query: Mapping[str, str], max_unpacked_bytes: int) -> GraspRequest:
@@ -90,21 +135,26 @@ def from_form(
     return _request(held.fields(), fields)
 
 
+def from_tensors(arrays: dict[str, Any], parameters: Mapping[str, Any]) -> GraspRequest:
+    """Join arrays and parameters, texts where a query has them or values of their own type."""
+    return _request(arrays, _typed(parameters))
+
+
 def _request(arrays: dict[str, Any], fields: dict[str, Any]) -> GraspRequest:
     parameters = validate(GraspParameters, fields)
     view = validate(View, {**arrays, "viewpoint": parameters.viewpoint})
     return GraspRequest(parameters=parameters, view=view)
 
 
-def _typed(texts: Mapping[str, str]) -> dict[str, Any]:
+def _typed(texts: Mapping[str, Any]) -> dict[str, Any]:
     """Turn query and form texts into values: numbers, lists and objects are JSON."""
     values: dict[str, Any] = dict(texts)
     for name in _JSON_VALUES:
-        if name in values:
+        if isinstance(values.get(name), str):
             try:
                 values[name] = orjson.loads(values[name])
             except orjson.JSONDecodeError:
-                example = '{"eps": 0.02, ...}' if name == "recovery" else "[0, 0, 0]"
+                example = _EXAMPLES.get(name, "[0, 0, 0]")
                 raise MalformedRequest(
                     f"{name} must be JSON, as in {example}; found {values[name][:80]!r}",
                     field=name,

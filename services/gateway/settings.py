@@ -65,6 +65,9 @@ class GatewaySettings(ServiceSettings):
         Processor time that reading an uploaded file may take.
     approach_distance, retreat_distance : float
         Of the pregrasp and the retreat from the grasp, in metres.
+    opening_margin : float
+        How much wider than the part the hand is open on its way in, in `format=moveit`: as it was
+        when collisions were looked for, metres.
     """
 
     model_config = environment("gateway")
@@ -93,6 +96,7 @@ class GatewaySettings(ServiceSettings):
     file_time_s: float = Field(default=10.0, gt=0)
     approach_distance: float = Field(default=0.10, gt=0)
     retreat_distance: float = Field(default=0.10, gt=0)
+    opening_margin: float = Field(default=0.010, ge=0)
 
     @property
     def concurrency(self) -> int:

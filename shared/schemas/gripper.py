@@ -2,11 +2,12 @@
 
 from __future__ import annotations
 
-from typing import Annotated, Literal
+from typing import Annotated, Literal, Self
 
-from pydantic import Field, FiniteFloat
+from pydantic import Field, FiniteFloat, model_validator
 
 from shared.schemas.fields import Name, Vector3
+from shared.schemas.urdf import Urdf
 from shared.wire import Message
 
 Length = Annotated[FiniteFloat, Field(gt=0, le=1)]
@@ -35,6 +36,17 @@ class ParallelGripper(Message):
     """Box of the hand behind the fingers: along x, y, z."""
     force: Force = 20.0
     """With which each finger presses."""
+    urdf: Urdf | None = None
+    """Its links and joints; None: nobody wrote them down, so poses of links are not known."""
+
+    @model_validator(mode="after")
+    def _strokes_reach_the_opening(self) -> Self:
+        strokes = self.urdf.strokes if self.urdf else ()
+        if strokes and abs(strokes[-1].opening - self.max_opening) > 1e-9:
+            raise ValueError(
+                f"the strokes end at {strokes[-1].opening} m, max_opening is {self.max_opening} m"
+            )
+        return self
 
 
 class SuctionGripper(Message):
@@ -58,6 +70,8 @@ class SuctionGripper(Message):
     """Box of the body behind the cup: along x, y, z."""
     force: Force
     """With which the cup holds straight out when it seals: underpressure times area."""
+    urdf: Urdf | None = None
+    """Its links; a cup has no joints."""
 
 
 Gripper = Annotated[ParallelGripper | SuctionGripper, Field(discriminator="kind")]

@@ -14,7 +14,7 @@ from pydantic import BaseModel
 from shared import __version__
 from shared.service.admission import Admission
 from shared.service.context import Guard, RequestContext
-from shared.service.envelope import ErrorEnvelope, install_error_handlers
+from shared.service.envelope import ErrorBodyOf, ErrorEnvelope, install_error_handlers
 from shared.service.exchange import Exchange
 from shared.service.logs import configure_logging, log_exchange
 from shared.service.memory import keep_freed_memory
@@ -53,6 +53,7 @@ def create_base(
     lifespan: Lifespan,
     ready: Callable[[], Awaitable[Health]],
     guard: Guard,
+    error_body: ErrorBodyOf | None = None,
 ) -> FastAPI:
     """Return a FastAPI application with what all services share.
 
@@ -70,6 +71,8 @@ def create_base(
         Asked by `/health/ready`; only status `ready` answers 200.
     guard : callable
         Raises the error of a request that may not pass.
+    error_body : callable, optional
+        Writes the body of an error, where that is not the envelope on every path.
     """
 
     @asynccontextmanager
@@ -89,6 +92,7 @@ def create_base(
     )
     metrics = Metrics(name)
     app.state.metrics = metrics
+    app.state.error_body = error_body
     app.state.admission = Admission(name, settings)
     metrics.watch(app.state.admission)
     app.state.tracer = trace.get_tracer("sparge", tracer_provider=provider)

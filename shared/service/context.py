@@ -89,7 +89,7 @@ class RequestContext:
                 error = InternalError("an internal error; the log has it under this request id")
             scope[ERROR_CODE] = error.code
             if not answering:
-                await error_response(error, identifier)(scope, receive, send_with_id)
+                await error_response(error, identifier, scope)(scope, receive, send_with_id)
         finally:
             seconds = time.perf_counter() - started
             self._observe(exchange(scope, status, seconds, limited.seen, bytes_out))

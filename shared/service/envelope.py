@@ -2,14 +2,18 @@
 
 from __future__ import annotations
 
+from collections.abc import Callable
+
 from fastapi import FastAPI, Request
 from fastapi.exceptions import RequestValidationError
 from fastapi.responses import JSONResponse, Response
 from pydantic import BaseModel
 from starlette.exceptions import HTTPException
+from starlette.types import Scope
 
 from shared.errors import (
     InvalidInput,
+    JsonObject,
     MalformedRequest,
     MethodNotAllowed,
     NoSuchPath,
@@ -34,13 +38,26 @@ class ErrorEnvelope(BaseModel):
     error: ErrorBody
 
 
-def error_response(error: SpargeError, request_id: str) -> Response:
-    """Return the contract's answer for `error`."""
+ErrorBodyOf = Callable[[SpargeError, str, str], JsonObject]
+"""Error, request id, path -> the JSON body of the answer."""
+
+
+def error_response(error: SpargeError, request_id: str, scope: Scope | None = None) -> Response:
+    """Return the answer for `error`, to the request of an ASGI scope.
+
+    Its body is the contract's envelope, unless the application speaks another protocol on
+    that path (`error_body` of `create_base`).
+    """
     retry_after_s = error.details.get("retry_after_s", error.retry_after_s)
     headers = {} if retry_after_s is None else {"Retry-After": str(retry_after_s)}
     if error.status == 401:
         headers["WWW-Authenticate"] = "Bearer"
-    return JSONResponse(error.envelope(request_id), status_code=error.status, headers=headers)
+    body_of: ErrorBodyOf | None = scope["app"].state.error_body if scope else None
+    if scope is None or body_of is None:
+        body = error.envelope(request_id)
+    else:
+        body = body_of(error, request_id, scope["path"])
+    return JSONResponse(body, status_code=error.status, headers=headers)
 
 
 def install_error_handlers(app: FastAPI) -> None:
@@ -76,4 +93,4 @@ def install_error_handlers(app: FastAPI) -> None:
 
 def _answered(request: Request, error: SpargeError) -> Response:
     request.scope[ERROR_CODE] = error.code
-    return error_response(error, request_id.get())
+    return error_response(error, request_id.get(), request.scope)

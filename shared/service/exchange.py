@@ -9,7 +9,12 @@ from starlette.types import Scope
 ERROR_CODE = "sparge.error_code"
 """Where a scope keeps the code of the error that a request was answered with."""
 
-POLLED = frozenset({"/health/live", "/health/ready", "/metrics"})
+POLLED = frozenset(
+    {
+        *("/health/live", "/health/ready", "/metrics"),
+        *("/v2/health/live", "/v2/health/ready", "/v2/models/sparge/ready"),
+    }
+)
 """Routes that machines ask every few seconds; they are neither logged at info nor traced."""
 
 IN_PROCESS = ("in-process", 0)

@@ -71,13 +71,36 @@ def small(route: Route[Any, Any], request: Message) -> Json:
     return fields
 
 
+def inference(view: Json) -> Json:
+    """Return the same view as tensors."""
+    return {
+        "id": "7",
+        "parameters": {"max_grasps": 3},
+        "inputs": [
+            tensor("depth", "UINT16", view["depth"]),
+            tensor("intrinsics", "FP64", view["intrinsics"]),
+            tensor("depth_scale", "FP64", [view["depth_scale"]]),
+            tensor("task", "BYTES", ["cooking"]),
+        ],
+        "outputs": [{"name": "grasps"}, {"name": "report"}],
+    }
+
+
+def tensor(name: str, datatype: str, data: list[Any]) -> Json:
+    shape = [len(data), *([len(data[0])] if isinstance(data[0], list) else [])]
+    return {"name": name, "datatype": datatype, "shape": shape, "data": data}
+
+
 @pytest.fixture
 def true_requests(service: str, examples: dict[Route[Any, Any], Message]) -> dict[str, Json]:
     """JSON bodies by the label of the operation that they are for."""
     held = {route: small(route, each) for route, each in examples.items()} | TAUGHT
     if service == "gateway":
         points = small(PERCEIVE, examples[PERCEIVE])
-        return {"POST /grasp": {**points, "task": "cooking", "max_grasps": 3}}
+        return {
+            "POST /grasp": {**points, "task": "cooking", "max_grasps": 3},
+            "POST /v2/models/sparge/infer": inference(points),
+        }
     return {
         f"{route.method} {route.path}": body
         for route, body in held.items()

@@ -68,6 +68,9 @@ def test_defaults_are_the_contracts() -> None:
         "recovery": None,
         "explain": True,
         "frame_id": "camera",
+        "format": "sparge",
+        "pose_of": None,
+        "stamp": None,
     }
 
 
