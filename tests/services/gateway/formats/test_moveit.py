@@ -74,11 +74,12 @@ def test_the_hand_opens_a_little_wider_than_the_part_and_closes_on_it() -> None:
         assert posture.joint_names == ("panda_finger_joint1", "panda_finger_joint2")
         assert posture.points[0].time_from_start.sec > 0
     assert grasp.pre_grasp_posture.points[0].positions == pytest.approx([0.03, 0.03])
-    assert grasp.grasp_posture.points[0].positions == (0, 0)
-    assert grasp.grasp_posture.points[0].effort == (20, 20)
+    assert grasp.grasp_posture.points[0].positions == pytest.approx([0, 0])
+    assert grasp.grasp_posture.points[0].effort == pytest.approx([20, 20])
     widest = GRASP.copy()
     widest[0, 7] = 0.079
-    assert written("panda", grasps=widest).pre_grasp_posture.points[0].positions == (0.04, 0.04)
+    opened = written("panda", grasps=widest).pre_grasp_posture.points[0]
+    assert opened.positions == pytest.approx([0.04, 0.04])
 
 
 def test_a_cup_has_no_joints() -> None:
