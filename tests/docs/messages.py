@@ -6,7 +6,9 @@ from typing import Any
 
 from pydantic import BaseModel, ValidationError
 
+from services.gateway.kserve.messages import InferRequest
 from shared.schemas.execution import ExecuteRequest
+from shared.schemas.point_cloud2 import PointCloud2
 from shared.schemas.primitive import EmsParameters
 from shared.schemas.rule import AffordanceDefinition, RuleDefinition
 from shared.schemas.task import TaskDefinition
@@ -15,6 +17,8 @@ MESSAGES: tuple[type[BaseModel], ...] = (
     AffordanceDefinition,
     EmsParameters,
     ExecuteRequest,
+    InferRequest,
+    PointCloud2,
     RuleDefinition,
     TaskDefinition,
 )
