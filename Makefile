@@ -1,6 +1,6 @@
 # Two commands matter: `make run` and `make test`. `make help` lists the rest.
 .DEFAULT_GOAL := help
-.PHONY: help setup dev run serve test load soak compose-load compose-test check fuzz bench experiments catalogue train-grasps docs docs-serve pictures lock clean
+.PHONY: help setup dev run serve test load soak compose-load compose-test check fuzz bench experiments catalogue train-grasps docs docs-serve pictures proto lock clean
 
 SAMPLE ?= experiments/samples/bottle.npz
 TASK ?= pouring
@@ -89,6 +89,10 @@ docs-serve: dev  ## The same on http://127.0.0.1:8100, built anew when a page ch
 
 pictures: dev  ## The pictures of the documentation anew, docs/images
 	@.venv/bin/python -m experiments.pictures
+
+proto: dev  ## Write services/grpc/generated anew from proto/sparge.proto
+	@.venv/bin/python -m grpc_tools.protoc --proto_path=proto --python_out=services/grpc/generated \
+		--pyi_out=services/grpc/generated proto/sparge.proto
 
 lock: dev  ## Write the dependency locks anew from pyproject.toml
 	@docker/lock.sh

@@ -7,14 +7,14 @@
 #   docker/locks/SERVICE.txt    what the image of one service installs, same versions
 set -eu
 cd "$(dirname "$0")/.."
-services="perception primitive-recovery reasoning grasp-proposal matching execution gateway"
+services="perception primitive-recovery reasoning grasp-proposal matching execution gateway grpc"
 compile() {
     output=$1; shift
     .venv/bin/uv pip compile --quiet --generate-hashes --universal --python-version 3.11 \
         --custom-compile-command "make lock" --output-file="$output" "$@"
 }
 extras() { for each in "$@"; do printf ' --extra %s' "$each"; done; }
-run=$(extras setup $services tracing cli annotate view grpc mcp experiments)
+run=$(extras setup $services tracing cli annotate view mcp experiments)
 dev=$(extras docs dev)
 compile requirements.lock $run pyproject.toml
 printf 'editables\nhatchling\nuv\n' | compile requirements-setup.lock --constraint requirements.lock -

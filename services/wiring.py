@@ -40,10 +40,7 @@ def create_app(settings: GatewaySettings | None = None) -> FastAPI:
     embedded = {name: create_stage(name) for name in STAGES if settings.stage_url(name) is None}
     gateway = create_gateway(
         settings,
-        {
-            name: httpx.ASGITransport(app=app, raise_app_exceptions=False, client=IN_PROCESS)
-            for name, app in embedded.items()
-        },
+        {name: to_application(app) for name, app in embedded.items()},
     )
     for stage in embedded.values():
         gateway.state.metrics.join(stage.state.metrics)
@@ -72,3 +69,18 @@ def embedded(ready_timeout_s: float = READY_TIMEOUT_S) -> Iterator[Sparge]:
     """
     with in_process(create_app(), ready_timeout_s) as client:
         yield Sparge(client.request)
+
+
+@asynccontextmanager
+async def in_this_process(
+    settings: GatewaySettings | None = None,
+) -> AsyncIterator[httpx.AsyncBaseTransport]:
+    """Run the whole backend on this event loop; gives the transport to its gateway."""
+    app = create_app(settings)
+    async with app.router.lifespan_context(app):
+        yield to_application(app)
+
+
+def to_application(app: FastAPI) -> httpx.AsyncBaseTransport:
+    """Return a transport into an application of this process; the caller logs its requests."""
+    return httpx.ASGITransport(app=app, raise_app_exceptions=False, client=IN_PROCESS)

@@ -14,9 +14,10 @@ SERVICES = (
     "matching",
     "execution",
     "gateway",
+    "grpc",
 )
 SHARED_LAYERS = (  # lowest first; a module may import its own layer and those before it
-    {"errors", "deadline", "geometry", "output"},
+    {"errors", "deadline", "geometry", "loopback", "output"},
     {"superquadric"},
     {"child", "settings", "wire"},
     {"schemas"},
@@ -31,6 +32,11 @@ MAY_USE_THE_WEB = (
     "services.wiring",
     "services.cli",
 )
+SPEAK_HTTP = {
+    "gateway": {"pipeline", "openapi", "knowledge", "body", "grasping", "kserve", "__main__"},
+    "grpc": {"backend", "service", "__main__"},
+}
+"""Modules and packages beside `app` that may, by service."""
 
 
 def violations(graph: grimp.ImportGraph) -> list[str]:
@@ -76,9 +82,8 @@ def _service(path: list[str]) -> str | None:
 
 
 def _speaks_http(path: list[str]) -> bool:
-    """A service's `app`, and in the gateway what chains and documents the others."""
-    beside_app = ("pipeline", "openapi", "knowledge", "body", "grasping", "kserve", "__main__")
-    return path[-1] == "app" or path[1:3] in [["gateway", each] for each in beside_app]
+    """A service's `app`, and in those that speak to others what does so."""
+    return path[-1] == "app" or bool(set(path[2:3]) & SPEAK_HTTP.get(path[1], set()))
 
 
 def _layer(path: list[str]) -> int:
@@ -109,6 +114,8 @@ def test_every_service_is_seen(graph: grimp.ImportGraph) -> None:
         ("services.reasoning.engine", "shared.service.client"),
         ("shared.geometry.plane", "shared.schemas.scene"),
         ("experiments.regions", "services.gateway.pipeline"),
+        ("services.grpc.calls", "services.gateway.request"),
+        ("services.grpc.answer", "httpx"),
     ],
 )
 def test_a_forbidden_import_is_reported(importer: str, imported: str) -> None:

@@ -4,7 +4,6 @@ from __future__ import annotations
 
 import os
 import sys
-from enum import StrEnum
 from functools import partial
 from pathlib import Path
 from typing import Annotated
@@ -16,8 +15,9 @@ from services.cli.annotate import annotate
 from services.cli.dataset import dataset
 from services.cli.doctor.command import doctor
 from services.cli.experiment import experiment
+from services.cli.grpc import grpc
 from services.cli.key import key_commands
-from services.cli.options import Input, Reasoning, json_option
+from services.cli.options import Input, LogLevel, Reasoning, json_option
 from services.cli.rule import rule_commands
 from services.cli.task import task_commands
 from shared.errors import SpargeError
@@ -33,18 +33,10 @@ app.command()(annotate)
 app.command()(dataset)
 app.command()(experiment)
 app.command()(doctor)
+app.command()(grpc)
 app.add_typer(task_commands, name="task")
 app.add_typer(rule_commands, name="rule")
 app.add_typer(key_commands, name="key")
-
-
-class LogLevel(StrEnum):
-    """The least that is logged."""
-
-    debug = "debug"
-    info = "info"
-    warning = "warning"
-    error = "error"
 
 
 def main() -> None:

@@ -22,6 +22,15 @@ class Input(StrEnum):
     object = "object"
 
 
+class LogLevel(StrEnum):
+    """The least that is logged."""
+
+    debug = "debug"
+    info = "info"
+    warning = "warning"
+    error = "error"
+
+
 def json_option(name: str, text: str | None) -> object:
     """Return what an option written as JSON says."""
     try:

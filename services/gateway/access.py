@@ -2,7 +2,6 @@
 
 from __future__ import annotations
 
-import ipaddress
 import math
 import time
 from collections.abc import Callable, MutableMapping
@@ -11,6 +10,7 @@ from typing import Any
 from services.gateway.keys import ApiKey, Keyring, Scope
 from services.gateway.settings import GatewaySettings
 from shared.errors import Forbidden, InvalidInput, RateLimited, Unauthorized
+from shared.loopback import is_loopback
 
 AsgiScope = MutableMapping[str, Any]
 
@@ -133,14 +133,6 @@ def require_guarded(host: str, settings: GatewaySettings) -> None:
             "Make a key with `sparge key add NAME` and set SPARGE_GATEWAY_API_KEYS_FILE; or say "
             "--insecure to let anybody who reaches it use and change it"
         )
-
-
-def is_loopback(host: str) -> bool:
-    """Tell whether `host` is a name or address of this machine alone."""
-    try:
-        return ipaddress.ip_address(host.strip("[]")).is_loopback
-    except ValueError:
-        return host.lower() == "localhost"
 
 
 def _require_loopback(scope: AsgiScope) -> None:

@@ -7,12 +7,14 @@ format to the standard error, whoever started them (docs/decisions/0025-observab
 from __future__ import annotations
 
 import logging
+import logging.config
 from datetime import UTC, datetime
 from typing import Literal
 
 import orjson
 from opentelemetry import trace
 from pydantic_settings import BaseSettings
+from uvicorn.config import LOGGING_CONFIG
 from uvicorn.logging import ColourizedFormatter, DefaultFormatter
 
 from shared.service.exchange import POLLED, Exchange
@@ -103,6 +105,12 @@ def configure_logging(settings: LogSettings | None = None) -> None:
             logging.root.addHandler(handler)
     # Every service says what it answered itself, with the id.
     logging.getLogger("uvicorn.access").handlers = []
+
+
+def log_as_a_server() -> None:
+    """Write logs as under uvicorn, in a server that uvicorn does not run."""
+    logging.config.dictConfig(LOGGING_CONFIG)
+    configure_logging()
 
 
 def log_exchange(service: str, exchange: Exchange) -> None:

@@ -12,7 +12,7 @@ from rich.console import Console
 
 from services.cli.doctor import environment, knowledge, remote, system
 from services.cli.doctor.finding import Finding, Status, show, worst
-from services.cli.doctor.packages import extra_of
+from services.cli.doctor.packages import OPTIONAL, extra_of, installed
 from services.cli.doctor.probe import probe
 from services.gateway.settings import STAGES, GatewaySettings
 from services.reasoning.settings import ReasoningSettings
@@ -95,6 +95,7 @@ def _checks(host: str, port: int) -> Iterator[Finding]:
     extras = [extra_of(each) for each in (*here, "gateway")]
     if tracing.configured():
         extras.append("tracing")
+    extras += installed(OPTIONAL)
     yield from probe("packages", *extras)
     if "reasoning" in here:
         prolog = [*probe("pyswip")]

@@ -24,7 +24,7 @@ _ALIKE = 0.8
 def settings_classes() -> dict[str, type[BaseSettings]]:
     """Return the settings of every service, and of what all services share, by name."""
     found: dict[str, type[BaseSettings]] = {"log": LogSettings}
-    for service in (*STAGES, "gateway"):
+    for service in (*STAGES, "gateway", "grpc"):
         module = importlib.import_module(f"services.{service}.settings")
         (found[service],) = (
             value

@@ -2,6 +2,9 @@
 
 from __future__ import annotations
 
+from collections.abc import Iterable
+from importlib.util import find_spec
+
 EXTRAS: dict[str, dict[str, str]] = {
     "perception": {"numba": "numba"},
     "primitive-recovery": {
@@ -19,6 +22,13 @@ EXTRAS: dict[str, dict[str, str]] = {
         "python-multipart": "python_multipart",
         "python-neo-lzf": "lzf",
     },
+    "grpc": {
+        "grpcio": "grpc",
+        "grpcio-health-checking": "grpc_health.v1.health_pb2",
+        "grpcio-reflection": "grpc_reflection.v1alpha.reflection",
+        "protobuf": "google.protobuf",
+    },
+    "mcp": {"mcp": "mcp"},
     "tracing": {
         "opentelemetry-sdk": "opentelemetry.sdk.trace",
         "opentelemetry-exporter-otlp-proto-http": (
@@ -26,6 +36,14 @@ EXTRAS: dict[str, dict[str, str]] = {
         ),
     },
 }
+
+OPTIONAL = ("grpc", "mcp")
+"""Extras of commands that an installation may do without: `sparge grpc`, `sparge mcp`."""
+
+
+def installed(extras: Iterable[str]) -> list[str]:
+    """Return those extras whose package, of the same name, is there: then all should be."""
+    return [extra for extra in extras if find_spec(extra) is not None]
 
 
 def extra_of(service: str) -> str:

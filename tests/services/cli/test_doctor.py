@@ -18,7 +18,7 @@ from fastapi import FastAPI
 
 from services.cli.doctor import environment, knowledge, remote, system
 from services.cli.doctor.finding import Finding, Status, worst
-from services.cli.doctor.packages import EXTRAS, extra_of
+from services.cli.doctor.packages import EXTRAS, OPTIONAL, extra_of
 from services.cli.doctor.probe import probe
 from services.gateway.settings import STAGES
 from services.matching.app import create_app
@@ -65,7 +65,7 @@ def test_a_sound_installation_answers_a_question(tmp_path: Path) -> None:
     assert "3 grasps for pouring" in found["question"]["message"]
     assert "SWI-Prolog" in found["pyswip"]["message"]
     assert "shape_classifier.onnx sha256 " in found["shape classifier"]["message"]
-    assert {f"extra {extra_of(each)}" for each in STAGES} <= set(found)
+    assert {f"extra {extra_of(each)}" for each in (*STAGES, *OPTIONAL)} <= set(found)
     assert not (tmp_path / "knowledge").exists(), "it only looks"
 
 
@@ -118,7 +118,7 @@ def test_typing_errors_and_wrong_values(monkeypatch: pytest.MonkeyPatch) -> None
 
 def test_every_setting_is_known() -> None:
     classes = environment.settings_classes()
-    assert set(classes) == {*STAGES, "gateway", "log"}
+    assert set(classes) == {*STAGES, "gateway", "grpc", "log"}
     names = {name for each in classes.values() for name in environment.variables(each).values()}
     assert {
         "SPARGE_GRIPPERS_DIR",

@@ -14,11 +14,12 @@ import httpx
 import pytest
 from fastapi import FastAPI
 
-from services.gateway.access import Access, is_loopback, needed_scope
+from services.gateway.access import Access, needed_scope
 from services.gateway.app import create_app
 from services.gateway.keys import Scope, add_key
 from services.gateway.settings import STAGES, GatewaySettings
 from shared.errors import Forbidden, RateLimited
+from shared.loopback import is_loopback
 from shared.schemas.route import Nothing
 from shared.schemas.task import DELETE_TASK, LIST_TASKS, TaskList, TaskName
 from shared.service import bind, create_service

@@ -1,0 +1,1 @@
+"""What `make proto` writes from proto/sparge.proto."""

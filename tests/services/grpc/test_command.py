@@ -1,0 +1,77 @@
+"""`sparge grpc` as a process: the whole backend over gRPC, until it is told to stop."""
+
+from __future__ import annotations
+
+import contextlib
+import os
+import signal
+import subprocess
+import sys
+from collections.abc import Iterator
+from pathlib import Path
+
+import grpc
+import pytest
+from grpc_health.v1 import health_pb2, health_pb2_grpc
+
+from services.grpc.generated import sparge_pb2 as pb
+from tests.support.grpc_calls import call
+from tests.support.processes import CHECKOUT, READY_TIMEOUT_S
+from tests.support.samples import sample_path
+from tests.support.serving import free_ports
+
+
+@contextlib.contextmanager
+def sparge_grpc(*words: str, **variables: str) -> Iterator[tuple[subprocess.Popen[str], int]]:
+    """Start `sparge grpc`; it has ended in the end."""
+    (port,) = free_ports(1)
+    command = ("-c", "from services.cli import main; main()", "grpc", "--port", str(port))
+    process = subprocess.Popen(
+        [sys.executable, *command, *words],
+        env={**os.environ, **variables},
+        cwd=CHECKOUT,
+        stderr=subprocess.PIPE,
+        text=True,
+    )
+    try:
+        yield process, port
+    finally:
+        process.kill()
+        process.communicate()
+
+
+@pytest.mark.slow
+def test_it_answers_and_stops_in_good_order(tmp_path: Path) -> None:
+    knowledge = {"SPARGE_REASONING_KNOWLEDGE_DIR": str(tmp_path)}
+    with (
+        sparge_grpc(**knowledge) as (process, port),
+        grpc.insecure_channel(f"127.0.0.1:{port}") as channel,
+    ):
+        grpc.channel_ready_future(channel).result(timeout=READY_TIMEOUT_S)
+        watched = health_pb2_grpc.HealthStub(channel).Watch(
+            health_pb2.HealthCheckRequest(), timeout=READY_TIMEOUT_S
+        )
+        assert any(said.status == health_pb2.HealthCheckResponse.SERVING for said in watched)
+        file = pb.CloudFile(name="bottle.npz", content=sample_path("bottle").read_bytes())
+        found, _ = call(channel, "Grasp", pb.GraspRequest(task="pouring", file=file))
+        assert found.found
+        assert found.grasps
+        process.send_signal(signal.SIGTERM)
+        _, told = process.communicate(timeout=20)
+        assert process.returncode == 0, told
+    assert f"gRPC on 127.0.0.1:{port}" in told
+    assert "grpc Grasp OK in" in told
+    assert "gRPC stopped" in told
+    assert "Traceback" not in told
+
+
+@pytest.mark.parametrize("behind", ["a gateway that is down", "a backend of its own"])
+def test_other_machines_are_not_served_without_keys_or_so_many_words(behind: str) -> None:
+    (nobody,) = free_ports(1)
+    down = behind == "a gateway that is down"
+    words = ("--url", f"http://127.0.0.1:{nobody}") if down else ()
+    with sparge_grpc(*words, "--host", "192.0.2.7") as (process, _):
+        _, told = process.communicate(timeout=60)
+    assert process.returncode == 1
+    assert ("stage_unavailable" if down else "API keys") in told
+    assert "Traceback" not in told
