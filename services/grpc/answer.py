@@ -2,23 +2,13 @@
 
 from __future__ import annotations
 
-from collections.abc import Callable
-from typing import TypeVar
-
 from services.grpc.enums import number
 from services.grpc.generated import sparge_pb2 as pb
 from services.grpc.geometry import plane, pose, vector
+from services.grpc.maybe import maybe
 from shared.schemas.answer import Grasp, GraspAnswer, KeptExplanation, LabelledPrimitive, Scene
 from shared.schemas.primitive import Deformation
 from shared.schemas.task import Condition, Explanation, Reason, Region, RuleTrace
-
-In = TypeVar("In")
-Out = TypeVar("Out")
-
-
-def maybe(convert: Callable[[In], Out], value: In | None) -> Out | None:
-    """Return a value converted, or None where there is none: the message's field is not set."""
-    return None if value is None else convert(value)
 
 
 def grasp_answer(of: GraspAnswer) -> pb.GraspAnswer:

@@ -7,8 +7,10 @@ from typing import Any
 from services.grpc.enums import number
 from services.grpc.generated import sparge_pb2 as pb
 from services.grpc.geometry import vector
+from services.grpc.maybe import maybe
 from shared.schemas.gripper import Gripper, GripperList, SuctionGripper
 from shared.schemas.task import AffordanceList, Task, TaskList
+from shared.schemas.urdf import Urdf
 
 
 def definition_fields(of: pb.TaskDefinition) -> dict[str, Any]:
@@ -65,6 +67,7 @@ def _gripper(of: Gripper) -> pb.Gripper:
                 compliance=of.compliance,
                 palm_size=vector(of.palm_size),
                 force=of.force,
+                urdf=maybe(_urdf, of.urdf),
             )
         )
     return pb.Gripper(
@@ -78,5 +81,19 @@ def _gripper(of: Gripper) -> pb.Gripper:
             tip_beyond_tcp=of.tip_beyond_tcp,
             palm_size=vector(of.palm_size),
             force=of.force,
+            urdf=maybe(_urdf, of.urdf),
         )
+    )
+
+
+def _urdf(of: Urdf) -> pb.Urdf:
+    return pb.Urdf(
+        links=[
+            pb.Link(name=each.name, xyz=vector(each.xyz), rpy=vector(each.rpy)) for each in of.links
+        ],
+        joints=of.joints,
+        strokes=[
+            pb.Stroke(opening=each.opening, positions=each.positions, advance=each.advance)
+            for each in of.strokes
+        ],
     )

@@ -515,8 +515,38 @@ class AffordanceList(_message.Message):
     affordances: _containers.RepeatedCompositeFieldContainer[Affordance]
     def __init__(self, affordances: _Optional[_Iterable[_Union[Affordance, _Mapping]]] = ...) -> None: ...
 
+class Link(_message.Message):
+    __slots__ = ("name", "xyz", "rpy")
+    NAME_FIELD_NUMBER: _ClassVar[int]
+    XYZ_FIELD_NUMBER: _ClassVar[int]
+    RPY_FIELD_NUMBER: _ClassVar[int]
+    name: str
+    xyz: Vector3
+    rpy: Vector3
+    def __init__(self, name: _Optional[str] = ..., xyz: _Optional[_Union[Vector3, _Mapping]] = ..., rpy: _Optional[_Union[Vector3, _Mapping]] = ...) -> None: ...
+
+class Stroke(_message.Message):
+    __slots__ = ("opening", "positions", "advance")
+    OPENING_FIELD_NUMBER: _ClassVar[int]
+    POSITIONS_FIELD_NUMBER: _ClassVar[int]
+    ADVANCE_FIELD_NUMBER: _ClassVar[int]
+    opening: float
+    positions: _containers.RepeatedScalarFieldContainer[float]
+    advance: float
+    def __init__(self, opening: _Optional[float] = ..., positions: _Optional[_Iterable[float]] = ..., advance: _Optional[float] = ...) -> None: ...
+
+class Urdf(_message.Message):
+    __slots__ = ("links", "joints", "strokes")
+    LINKS_FIELD_NUMBER: _ClassVar[int]
+    JOINTS_FIELD_NUMBER: _ClassVar[int]
+    STROKES_FIELD_NUMBER: _ClassVar[int]
+    links: _containers.RepeatedCompositeFieldContainer[Link]
+    joints: _containers.RepeatedScalarFieldContainer[str]
+    strokes: _containers.RepeatedCompositeFieldContainer[Stroke]
+    def __init__(self, links: _Optional[_Iterable[_Union[Link, _Mapping]]] = ..., joints: _Optional[_Iterable[str]] = ..., strokes: _Optional[_Iterable[_Union[Stroke, _Mapping]]] = ...) -> None: ...
+
 class ParallelGripper(_message.Message):
-    __slots__ = ("name", "description", "max_opening", "finger_width", "finger_thickness", "finger_length", "tip_beyond_tcp", "palm_size", "force")
+    __slots__ = ("name", "description", "max_opening", "finger_width", "finger_thickness", "finger_length", "tip_beyond_tcp", "palm_size", "force", "urdf")
     NAME_FIELD_NUMBER: _ClassVar[int]
     DESCRIPTION_FIELD_NUMBER: _ClassVar[int]
     MAX_OPENING_FIELD_NUMBER: _ClassVar[int]
@@ -526,6 +556,7 @@ class ParallelGripper(_message.Message):
     TIP_BEYOND_TCP_FIELD_NUMBER: _ClassVar[int]
     PALM_SIZE_FIELD_NUMBER: _ClassVar[int]
     FORCE_FIELD_NUMBER: _ClassVar[int]
+    URDF_FIELD_NUMBER: _ClassVar[int]
     name: str
     description: str
     max_opening: float
@@ -535,10 +566,11 @@ class ParallelGripper(_message.Message):
     tip_beyond_tcp: float
     palm_size: Vector3
     force: float
-    def __init__(self, name: _Optional[str] = ..., description: _Optional[str] = ..., max_opening: _Optional[float] = ..., finger_width: _Optional[float] = ..., finger_thickness: _Optional[float] = ..., finger_length: _Optional[float] = ..., tip_beyond_tcp: _Optional[float] = ..., palm_size: _Optional[_Union[Vector3, _Mapping]] = ..., force: _Optional[float] = ...) -> None: ...
+    urdf: Urdf
+    def __init__(self, name: _Optional[str] = ..., description: _Optional[str] = ..., max_opening: _Optional[float] = ..., finger_width: _Optional[float] = ..., finger_thickness: _Optional[float] = ..., finger_length: _Optional[float] = ..., tip_beyond_tcp: _Optional[float] = ..., palm_size: _Optional[_Union[Vector3, _Mapping]] = ..., force: _Optional[float] = ..., urdf: _Optional[_Union[Urdf, _Mapping]] = ...) -> None: ...
 
 class SuctionGripper(_message.Message):
-    __slots__ = ("name", "description", "cup_diameter", "cup_length", "compliance", "palm_size", "force")
+    __slots__ = ("name", "description", "cup_diameter", "cup_length", "compliance", "palm_size", "force", "urdf")
     NAME_FIELD_NUMBER: _ClassVar[int]
     DESCRIPTION_FIELD_NUMBER: _ClassVar[int]
     CUP_DIAMETER_FIELD_NUMBER: _ClassVar[int]
@@ -546,6 +578,7 @@ class SuctionGripper(_message.Message):
     COMPLIANCE_FIELD_NUMBER: _ClassVar[int]
     PALM_SIZE_FIELD_NUMBER: _ClassVar[int]
     FORCE_FIELD_NUMBER: _ClassVar[int]
+    URDF_FIELD_NUMBER: _ClassVar[int]
     name: str
     description: str
     cup_diameter: float
@@ -553,7 +586,8 @@ class SuctionGripper(_message.Message):
     compliance: float
     palm_size: Vector3
     force: float
-    def __init__(self, name: _Optional[str] = ..., description: _Optional[str] = ..., cup_diameter: _Optional[float] = ..., cup_length: _Optional[float] = ..., compliance: _Optional[float] = ..., palm_size: _Optional[_Union[Vector3, _Mapping]] = ..., force: _Optional[float] = ...) -> None: ...
+    urdf: Urdf
+    def __init__(self, name: _Optional[str] = ..., description: _Optional[str] = ..., cup_diameter: _Optional[float] = ..., cup_length: _Optional[float] = ..., compliance: _Optional[float] = ..., palm_size: _Optional[_Union[Vector3, _Mapping]] = ..., force: _Optional[float] = ..., urdf: _Optional[_Union[Urdf, _Mapping]] = ...) -> None: ...
 
 class Gripper(_message.Message):
     __slots__ = ("parallel", "suction")

@@ -28,8 +28,12 @@ from tests.support.grpc_as_http import plain
 
 ROOT = Path(__file__).parents[3]
 
+VIEW = {"points", "depth", "file", "per_point"}
+OF_HTTP = {"format", "pose_of", "stamp"}
+"""Formats of other tools are JSON."""
+
 PAIRS: list[tuple[type[Message], Any, set[str]]] = [
-    (GraspParameters, pb.GraspRequest.DESCRIPTOR, {"points", "depth", "file", "per_point"}),
+    (GraspParameters, pb.GraspRequest.DESCRIPTOR, VIEW | OF_HTTP),
     (GraspAnswer, pb.GraspAnswer.DESCRIPTOR, {"points"}),
     (KeptExplanation, pb.KeptExplanation.DESCRIPTOR, set()),
     (RequestName, pb.RequestName.DESCRIPTOR, set()),
@@ -42,7 +46,7 @@ PAIRS: list[tuple[type[Message], Any, set[str]]] = [
     (ExecuteRequest, pb.ExecuteRequest.DESCRIPTOR, set()),
     (ExecuteResponse, pb.ExecuteResponse.DESCRIPTOR, set()),
 ]
-"""Message of the HTTP interface, of gRPC, and the fields that only the latter has."""
+"""Message of the HTTP interface, of gRPC, and the fields that only one of them has."""
 
 
 @pytest.mark.parametrize(("model", "descriptor", "more"), PAIRS, ids=lambda each: str(each)[:40])
