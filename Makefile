@@ -87,8 +87,12 @@ docs: dev  ## The documentation site, out/site/index.html; a broken link fails i
 docs-serve: dev  ## The same on http://127.0.0.1:8100, built anew when a page changes
 	@NO_MKDOCS_2_WARNING=1 .venv/bin/mkdocs serve --quiet -f docs/site/mkdocs.yml -a 127.0.0.1:8100
 
-pictures: dev  ## The pictures of the documentation anew, docs/images
-	@.venv/bin/python -m experiments.pictures
+PICTURE_PORT ?= 8398
+
+pictures: dev  ## The pictures of the documentation anew, docs/images, from answers of a backend
+	@.venv/bin/sparge serve --port $(PICTURE_PORT) --log-level warning & \
+	backend=$$!; trap "kill $$backend" EXIT; \
+	.venv/bin/python -m experiments.pictures --url http://127.0.0.1:$(PICTURE_PORT) --wait 120
 
 proto: dev  ## Write services/grpc/generated anew from proto/sparge.proto
 	@.venv/bin/python -m grpc_tools.protoc --proto_path=proto --python_out=services/grpc/generated \

@@ -10,6 +10,7 @@ from typing import Annotated
 
 import typer
 from rich.console import Console
+from rich.text import Text
 
 from services.cli.annotate import annotate
 from services.cli.dataset import dataset
@@ -44,7 +45,8 @@ def main() -> None:
     try:
         app()
     except SpargeError as error:
-        Console(stderr=True).print(f"[red]{error.code}[/red]: {error.message}", highlight=False)
+        said = Text.assemble((error.code, "red"), ": ", error.message)
+        Console(stderr=True).print(said, highlight=False)
         sys.exit(1)
 
 

@@ -5,6 +5,7 @@ from __future__ import annotations
 from rich import box
 from rich.console import Console
 from rich.table import Table
+from rich.text import Text
 
 from shared.client import headline
 from shared.schemas.answer import GraspAnswer
@@ -18,11 +19,12 @@ def show(answer: GraspAnswer, console: Console) -> None:
         console.print(_grasps(answer))
     if answer.reason is not None:
         console.print(
-            f"[yellow]{answer.reason.code}[/yellow]: {answer.reason.message}", highlight=False
+            Text.assemble((answer.reason.code, "yellow"), ": ", answer.reason.message),
+            highlight=False,
         )
     if answer.explanation is not None:
         console.print("[bold]Why[/bold]")
-        console.print(answer.explanation.text, highlight=False)
+        console.print(Text(answer.explanation.text), highlight=False)
     spent = "  ".join(f"{name} {value:.0f}" for name, value in answer.timings_ms.items())
     console.print(f"[bold]Time[/bold] (ms)  {spent}", highlight=False)
 

@@ -13,6 +13,7 @@ import sys
 from collections.abc import Callable, Iterator
 from dataclasses import dataclass, field
 from pathlib import Path
+from string import Template
 from unittest import mock
 
 from shared.settings import PROJECT_ROOT
@@ -95,7 +96,8 @@ class Checkout:
         assert not CHANGES_THE_MACHINE.search(command), f"not to be run by tests: {command}"
         command = self.here(command)
         if (export := EXPORT.match(command)) is not None:
-            self.exported[export[1]] = export[2]
+            known = {**os.environ, **self._environment(), "PWD": str(self.folder)}
+            self.exported[export[1]] = Template(export[2]).safe_substitute(known)
             return Done(0, "", "")
         if not OPERATORS.search(_unquoted(command)):
             if SPARGE.match(command):

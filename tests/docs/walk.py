@@ -7,10 +7,12 @@ import json
 import re
 import tomllib
 from dataclasses import dataclass, field
+from functools import cache
 from typing import Any
 
 import yaml
 
+from shared.settings import PROJECT_ROOT
 from tests.docs.checkout import Checkout, Done, captured
 from tests.docs.exceptions import Exceptions
 from tests.docs.fences import OUTPUT, SHELL, Block, Command, commands
@@ -110,6 +112,8 @@ class Walk:
                 list(yaml.safe_load_all(block.text))
             case "toml":
                 tomllib.loads(block.text)
+            case "prolog":
+                assert _squeezed(block.text) in _shipped_rules(), f"{block.place}: no shipped rule"
             case "text":
                 for line in block.text.splitlines():
                     assert not COMMANDS.match(line), f"{block.place}: a command as text: {line}"
@@ -127,5 +131,16 @@ class Walk:
         assert differs is None, f"{place}: {differs}\n--- printed:\n{printed}"
 
 
+@cache
+def _shipped_rules() -> str:
+    files = sorted((PROJECT_ROOT / "rules").rglob("*.pl"))
+    return _squeezed("\n".join(each.read_text(encoding="utf-8") for each in files))
+
+
+def _squeezed(text: str) -> str:
+    return " ".join(text.split())
+
+
 def _seen(ended: Done, command: Command) -> str:
-    return ended.stdout + ended.stderr if command.fails else ended.stdout
+    """Return what a page shows of it: what goes on beside an output is left out."""
+    return ended.stdout + ended.stderr if command.fails or not ended.stdout else ended.stdout

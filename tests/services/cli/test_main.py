@@ -62,6 +62,12 @@ def test_grasp_as_json(environment: dict[str, str]) -> None:
     assert len(answer["grasps"]) <= 2
 
 
+def test_what_is_said_is_printed_as_it_is(environment: dict[str, str]) -> None:
+    done = sparge(environment, "grasp", str(sample_path("ladle")), "--task", "hammering")
+    assert done.returncode == 0, done.stderr
+    assert "default/version2:pound:" in done.stdout  # and no emoji
+
+
 def test_an_error_is_one_line_and_status_1(environment: dict[str, str]) -> None:
     done = sparge(environment, "grasp", str(sample_path("bottle")), "--task", "juggling")
     assert done.returncode == 1
