@@ -6,8 +6,13 @@ import json
 import shutil
 from collections.abc import Callable, Mapping
 from pathlib import Path
+from typing import Any
+
+import numpy as np
+from numpy.typing import NDArray
 
 from experiments.catalogue import CatalogueObject, build
+from shared.geometry.points import points_from_depth
 from tests.support.samples import sample_path
 
 
@@ -41,6 +46,31 @@ def of_dataset(folder: Path) -> None:
     label = {"file": "hammer.obj", "regions": {"hammering": ["x", ">", 0]}}
     (folder / "scans" / "objects.json").write_text(json.dumps({"objects": {"my_hammer": label}}))
 
+
+class Robot:
+    """A stand-in for the driver of an arm, which every reader has another of."""
+
+    def move_to(self, base_from_grasp: NDArray[np.float64]) -> None:
+        """Take a pose (4, 4) and go nowhere."""
+        assert base_from_grasp.shape == (4, 4)
+        assert np.isfinite(base_from_grasp).all()
+
+
+def of_client() -> dict[str, Any]:
+    """Return the reader's own things: a cloud, a calibrated camera, an arm."""
+    with np.load(sample_path("bottle")) as view:
+        points = points_from_depth(view["depth"], view["intrinsics"], float(view["depth_scale"]))
+    return {
+        "points": points,
+        "bottle_points": points,
+        "mug_points": points,
+        "calibration": np.eye(4),
+        "robot": Robot(),
+    }
+
+
+NAMES: Mapping[str, Callable[[], dict[str, Any]]] = {"client.md": of_client}
+"""By page: what its snippets call by a name without making it."""
 
 FOR: Mapping[str, Callable[[Path], None]] = {
     "annotate.md": of_annotate,

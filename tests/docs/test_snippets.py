@@ -66,6 +66,8 @@ def test_the_page_does_what_it_says(page: Path, checkout: Checkout) -> None:
     if given is not None:
         given(checkout.folder)
     walk = Walk(checkout, exceptions.read())
+    if page.name in givens.NAMES:
+        walk.names.update(givens.NAMES[page.name]())
     for block in blocks(page, PROJECT_ROOT):
         walk.follow(block)
 

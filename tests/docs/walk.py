@@ -2,7 +2,10 @@
 
 from __future__ import annotations
 
+import ast
+import asyncio
 import contextlib
+import inspect
 import json
 import re
 import tomllib
@@ -19,6 +22,7 @@ from tests.docs.fences import OUTPUT, SHELL, Block, Command, commands
 from tests.docs.likeness import difference
 from tests.docs.messages import kind_of
 
+AWAIT_ANYWHERE = ast.PyCF_ALLOW_TOP_LEVEL_AWAIT
 COMMANDS = re.compile(
     r"^(?:\$ )?(?:sudo |[A-Z_]+=\S+ )*(?:\./|(?:\.venv/bin/)?(?:sparge|python3?|uvicorn)\b|"
     r"(?:make|pip|docker|kubectl|curl|git|apt|apt-get|colcon|ros2) )"
@@ -94,9 +98,12 @@ class Walk:
     def _python(self, block: Block) -> None:
         if self.exceptions.is_not_run(block.first_line):
             return
-        code = compile(self.checkout.here(block.text), block.place, "exec")
+        code = compile(self.checkout.here(block.text), block.place, "exec", AWAIT_ANYWHERE)
         with captured() as (out, _), contextlib.chdir(self.checkout.folder):
-            exec(code, self.names)
+            if code.co_flags & inspect.CO_COROUTINE:
+                asyncio.run(eval(code, self.names))
+            else:
+                exec(code, self.names)
         self.done.append(block.text)
         self.printed = out.getvalue()
 
