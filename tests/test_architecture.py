@@ -15,6 +15,7 @@ SERVICES = (
     "execution",
     "gateway",
     "grpc",
+    "mcp",
 )
 SHARED_LAYERS = (  # lowest first; a module may import its own layer and those before it
     {"errors", "deadline", "geometry", "loopback", "output"},
@@ -116,6 +117,7 @@ def test_every_service_is_seen(graph: grimp.ImportGraph) -> None:
         ("experiments.regions", "services.gateway.pipeline"),
         ("services.grpc.calls", "services.gateway.request"),
         ("services.grpc.answer", "httpx"),
+        ("services.mcp.tools", "services.gateway.request"),
     ],
 )
 def test_a_forbidden_import_is_reported(importer: str, imported: str) -> None:

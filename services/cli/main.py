@@ -18,6 +18,7 @@ from services.cli.doctor.command import doctor
 from services.cli.experiment import experiment
 from services.cli.grpc import grpc
 from services.cli.key import key_commands
+from services.cli.mcp import mcp
 from services.cli.options import Input, LogLevel, Reasoning, json_option
 from services.cli.rule import rule_commands
 from services.cli.task import task_commands
@@ -35,6 +36,7 @@ app.command()(dataset)
 app.command()(experiment)
 app.command()(doctor)
 app.command()(grpc)
+app.command()(mcp)
 app.add_typer(task_commands, name="task")
 app.add_typer(rule_commands, name="rule")
 app.add_typer(key_commands, name="key")

@@ -1,0 +1,1 @@
+"""SPaRGE for agents: tools and resources of the Model Context Protocol."""
