@@ -15,17 +15,9 @@ from numpy.typing import ArrayLike, NDArray
 
 from services.cli.picture.gripper import Hand, draw_hand
 from services.cli.picture.parts import draw_parts, list_parts, number_parts, vertices_of
-from services.cli.picture.style import (
-    GRIPPER,
-    NO_PART,
-    OTHER_GRIPPER,
-    PART_COLOURS,
-    REGION,
-    REST,
-    SHADOW,
-    TABLE,
-)
+from services.cli.picture.style import GRIPPER, OTHER_GRIPPER, SHADOW, TABLE
 from services.cli.picture.view import View, shading
+from shared.palette import NO_PART, REGION, REST, part_colour
 from shared.schemas.primitive import Primitive
 
 Array = NDArray[np.float64]
@@ -79,7 +71,7 @@ def draw_answer(
         cloud, primitives, hands[0].fork if hands else None, up, np.asarray(viewpoint, dtype=float)
     )
     light = shading(cloud, view, np.asarray(viewpoint, dtype=float))
-    colour_of = {each.id: PART_COLOURS[k % len(PART_COLOURS)] for k, each in enumerate(primitives)}
+    colour_of = {each.id: part_colour(k) for k, each in enumerate(primitives)}
 
     figure = Figure(figsize=(13.0, 6.6), dpi=120, facecolor="white")
     FigureCanvasAgg(figure)

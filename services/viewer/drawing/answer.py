@@ -1,0 +1,197 @@
+"""The whole answer: cloud, parts, region, grasps."""
+
+from __future__ import annotations
+
+from collections.abc import Sequence
+from dataclasses import dataclass, field
+
+import numpy as np
+import viser
+from numpy.typing import NDArray
+
+from services.viewer.drawing.gripper import gripper_mesh
+from shared.client import GraspResult
+from shared.geometry.points import bounds
+from shared.geometry.rotation import unit
+from shared.palette import NO_PART, REGION, REST, Rgb, part_colour, rgb
+from shared.schemas.gripper import Gripper
+from shared.schemas.primitive import Primitive
+from shared.superquadric import surface_mesh
+
+Array = NDArray[np.float64]
+Wxyz = tuple[float, float, float, float]
+
+MAX_BACKGROUND = 12_000
+NEAR = 2.0
+"""How much around the object is shown of what is not the object, in radii of it."""
+RINGS, SEGMENTS = 24, 48
+POINT_M, GLOW_M = 0.0022, 0.0042
+LOW, MIDDLE, HIGH = (0.80, 0.16, 0.16), (0.95, 0.77, 0.06), (0.10, 0.62, 0.30)
+"""Colours of a grasp by its score: 0, 0.5, 1."""
+
+
+@dataclass
+class Shown:
+    """What was drawn, to hide or take away again.
+
+    Attributes
+    ----------
+    cloud, glow, background : handle or None
+        The object's points by part, those of the region, and what else the sensor saw.
+    parts, labels : dict
+        By the part's id.
+    grasps : list
+        Best first.
+    """
+
+    cloud: viser.PointCloudHandle | None = None
+    glow: viser.PointCloudHandle | None = None
+    background: viser.PointCloudHandle | None = None
+    parts: dict[int, viser.MeshHandle] = field(default_factory=dict)
+    labels: dict[int, viser.LabelHandle] = field(default_factory=dict)
+    grasps: list[viser.MeshHandle] = field(default_factory=list)
+
+
+def draw_answer(
+    scene: viser.SceneApi,
+    result: GraspResult,
+    points: Array,
+    gripper: Gripper | None,
+    *,
+    best: int = 0,
+    max_grasps: int = 5,
+) -> Shown:
+    """Draw an answer under `/answer` of a scene, in the frame of the view.
+
+    Parameters
+    ----------
+    scene : viser.SceneApi
+        Of a server or of one client; what was under `/answer` before is replaced.
+    result : GraspResult
+    points : (N, 3) array
+        The points that the answer speaks about, metres; a depth image's row-major.
+    gripper : Gripper or None
+        Drawn at every grasp; None draws none.
+    best : int
+        Rank of the grasp that is drawn in full; the others are faint.
+    max_grasps : int
+        No more grasps than this.
+    """
+    scene.remove_by_name("/answer")
+    scene.set_up_direction(tuple(unit(np.asarray(result.answer.scene.up, dtype=float))))
+    shown = Shown()
+    _draw_points(scene, shown, result, points)
+    _draw_parts(scene, shown, result)
+    if gripper is not None:
+        for rank, row in enumerate(result.grasps[:max_grasps]):
+            shown.grasps.append(
+                draw_grasp(scene, f"/answer/grasps/{rank}", row, gripper, rank == best)
+            )
+    return shown
+
+
+def draw_grasp(
+    scene: viser.SceneApi, name: str, row: Array, gripper: Gripper, in_full: bool
+) -> viser.MeshHandle:
+    """Draw one gripper, coloured by its score.
+
+    Parameters
+    ----------
+    row : (9,) array
+        x y z qx qy qz qw width score.
+    in_full : bool
+        Opaque; else a hint of it.
+    """
+    vertices, faces = gripper_mesh(gripper, row[7])
+    return scene.add_mesh_simple(
+        name,
+        vertices,
+        faces,
+        color=score_colour(row[8]),
+        opacity=0.95 if in_full else 0.16,
+        flat_shading=True,
+        side="double",
+        cast_shadow=in_full,
+        wxyz=wxyz(row[3:7]),
+        position=tuple(row[:3]),
+    )
+
+
+def score_colour(score: float) -> Rgb:
+    """Return red for 0, yellow for a half, green for 1."""
+    red, green, blue = (
+        int(255 * np.interp(score, (0.0, 0.5, 1.0), channel))
+        for channel in zip(LOW, MIDDLE, HIGH, strict=True)
+    )
+    return red, green, blue
+
+
+def wxyz(quaternion: Array) -> Wxyz:
+    """Return a quaternion [x, y, z, w] in viser's order."""
+    x, y, z, w = map(float, quaternion)
+    return w, x, y, z
+
+
+def describe(part: Primitive) -> str:
+    """Return what a part is in a few words: `0  cylinder  63 x 65 x 160 mm`."""
+    sizes = " × ".join(f"{1e3 * extent:.0f}" for extent in part.full_extents)
+    return f"{part.id}  {part.shape_class}  {sizes} mm"
+
+
+def _draw_points(scene: viser.SceneApi, shown: Shown, result: GraspResult, points: Array) -> None:
+    part, region = result.point_primitive, result.point_region
+    seen = np.isfinite(points).all(axis=1) & (points != 0).any(axis=1)
+    on_object = seen & (part >= 0)
+    rest = np.flatnonzero(seen & ~on_object)
+    if on_object.any():  # what is near says where the object stands; more would hide it
+        low, high = bounds(points[on_object])
+        middle, radius = (low + high) / 2, float(np.linalg.norm(high - low)) / 2
+        rest = rest[np.linalg.norm(points[rest] - middle, axis=1) < NEAR * radius]
+    rest = rest[:: 1 + len(rest) // MAX_BACKGROUND]
+    colour_of = {each.id: rgb(part_colour(k)) for k, each in enumerate(result.answer.primitives)}
+    shown.background = _cloud(scene, "/answer/background", points[rest], rgb(REST), 0.6 * POINT_M)
+    plain = np.flatnonzero(on_object & ~region)
+    colours = [colour_of.get(int(each), rgb(NO_PART)) for each in part[plain]]
+    shown.cloud = _cloud(scene, "/answer/cloud", points[plain], colours, POINT_M)
+    shown.glow = _cloud(scene, "/answer/region", points[on_object & region], rgb(REGION), GLOW_M)
+
+
+def _cloud(
+    scene: viser.SceneApi, name: str, points: Array, colours: Sequence[Rgb] | Rgb, size: float
+) -> viser.PointCloudHandle | None:
+    if not len(points):
+        return None
+    return scene.add_point_cloud(
+        name,
+        points.astype(np.float32),
+        np.asarray(colours, dtype=np.uint8),
+        point_size=size,
+        point_shape="circle",
+        precision="float32",
+    )
+
+
+def _draw_parts(scene: viser.SceneApi, shown: Shown, result: GraspResult) -> None:
+    region = result.answer.region
+    held = region.primitive_ids if region else ()
+    up = unit(np.asarray(result.answer.scene.up, dtype=float))
+    for number, part in enumerate(result.answer.primitives):
+        vertices, faces = surface_mesh(part.superquadric, RINGS, SEGMENTS)
+        is_held = part.id in held
+        shown.parts[part.id] = scene.add_mesh_simple(
+            f"/answer/parts/{part.id}",
+            vertices,
+            faces,
+            color=rgb(REGION) if is_held else rgb(part_colour(number)),
+            opacity=0.42 if is_held else 0.22,
+            side="double",
+            cast_shadow=False,
+        )
+        top = vertices[np.argmax(vertices @ up)] + 0.006 * up
+        shown.labels[part.id] = scene.add_label(
+            f"/answer/labels/{part.id}",
+            describe(part) + (" · hold" if is_held else ""),
+            position=tuple(top),
+            anchor="bottom-center",
+            font_screen_scale=0.85,
+        )
