@@ -1,7 +1,7 @@
 """Message definitions of ROS 2, field by field, and JSON held against them.
 
-From the .msg files of builtin_interfaces, std_msgs, geometry_msgs, sensor_msgs, trajectory_msgs and
-moveit_msgs; comments and constants are left out.
+From the .msg files of builtin_interfaces, std_msgs, geometry_msgs, sensor_msgs, std_srvs,
+trajectory_msgs and moveit_msgs; comments and constants are left out.
 """
 
 from __future__ import annotations
@@ -18,6 +18,13 @@ DEFINITIONS = {
     "geometry_msgs/Pose": "geometry_msgs/Point position, geometry_msgs/Quaternion orientation",
     "geometry_msgs/PoseStamped": "std_msgs/Header header, geometry_msgs/Pose pose",
     "geometry_msgs/Vector3Stamped": "std_msgs/Header header, geometry_msgs/Vector3 vector",
+    "sensor_msgs/PointField": "string name, uint32 offset, uint8 datatype, uint32 count",
+    "sensor_msgs/PointCloud2": (
+        "std_msgs/Header header, uint32 height, uint32 width, sensor_msgs/PointField[] fields, "
+        "bool is_bigendian, uint32 point_step, uint32 row_step, uint8[] data, bool is_dense"
+    ),
+    "std_srvs/Trigger_Request": "",
+    "std_srvs/Trigger_Response": "bool success, string message",
     "geometry_msgs/PoseArray": "std_msgs/Header header, geometry_msgs/Pose[] poses",
     "trajectory_msgs/JointTrajectoryPoint": (
         "float64[] positions, float64[] velocities, float64[] accelerations, float64[] effort, "
@@ -48,6 +55,12 @@ _PRIMITIVES: dict[str, type | tuple[type, ...]] = {
 }
 
 
+def fields_of(kind: str) -> dict[str, str]:
+    """Return the type of each field of a message, in their order."""
+    pairs = [each.split(" ") for each in DEFINITIONS[kind].split(", ") if each]
+    return {name: of for of, name in pairs}
+
+
 def require_message(kind: str, found: Any, where: str = "") -> None:
     """Assert that `found` has the fields of a message in their order, each of its type."""
     where = where or kind
@@ -60,7 +73,7 @@ def require_message(kind: str, found: Any, where: str = "") -> None:
         assert isinstance(found, _PRIMITIVES[kind]), f"{where}: {found!r} is no {kind}"
         assert not isinstance(found, bool), where
         return
-    fields = [each.split(" ") for each in DEFINITIONS[kind].split(", ")]
-    assert list(found) == [name for _, name in fields], where
-    for each, name in fields:
+    fields = fields_of(kind)
+    assert list(found) == list(fields), where
+    for name, each in fields.items():
         require_message(each, found[name], f"{where}.{name}")

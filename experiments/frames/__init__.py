@@ -1,0 +1,1 @@
+"""The drawing and the table of docs/frames.md, from the gripper files."""
