@@ -36,6 +36,8 @@ def on_files(files: Files, config: MkDocsConfig) -> Files:
 
 def on_page_markdown(markdown: str, page: Page, **_: Any) -> str:
     """Turn links into the repository into links into the site."""
+    if page.file.src_uri in pages.WIDE:
+        page.meta["hide"] = ["toc"]
     return pages.linked(markdown, page.file.src_uri)
 
 

@@ -11,7 +11,8 @@ from typing import Any
 FRONT, DECISIONS, API = "index.md", "decisions/index.md", "api.md"
 OF_THE_REPOSITORY = ("CHANGELOG.md", "CONTRIBUTING.md", "SECURITY.md")
 LINK = re.compile(r"(?<=\]\()(?!https?:|mailto:|#)([^)\s#]+)(#[^)\s]*)?(?=\))")
-MADE_BY_HAND = (DECISIONS, API, FRONT)
+WIDE = ("comparison.md", "results.md", API)
+"""Pages whose tables need the room of the list of headings."""
 REFERENCE = """# API reference
 
 Every endpoint of the gateway, from the OpenAPI document that a running backend serves under
