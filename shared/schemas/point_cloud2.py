@@ -6,7 +6,6 @@ list of bytes.
 
 from __future__ import annotations
 
-import base64
 import binascii
 from collections.abc import Mapping
 from typing import Annotated, Any
@@ -59,7 +58,7 @@ class CloudHeader(Message):
 def _bytes(data: object) -> object:
     if isinstance(data, str):
         try:
-            return base64.b64decode(data, validate=True)
+            return binascii.a2b_base64(data, strict_mode=True)
         except (binascii.Error, ValueError):
             raise PydanticCustomError("base64", "is a text, but not base64") from None
     if isinstance(data, list):

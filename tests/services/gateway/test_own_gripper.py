@@ -4,6 +4,7 @@ from __future__ import annotations
 
 from collections.abc import Iterator
 from pathlib import Path
+from typing import Any
 
 import numpy as np
 import pytest
@@ -64,3 +65,26 @@ def test_grasps_of_the_users_gripper(own: Client, gripper: str) -> None:
     assert answer["grasps"], answer["reason"]
     widths = np.array([grasp["width"] for grasp in answer["grasps"]])
     assert (widths == 0).all() if gripper == "my_cup" else ((widths > 0) & (widths < 0.1)).all()
+
+
+def test_a_gripper_whose_links_nobody_wrote_down_has_poses_of_its_tcp_alone(own: Client) -> None:
+    question = {"task": "pouring", "gripper": "my_hand", "format": "moveit"}
+    body = sample_path("bottle").read_bytes()
+
+    def ask(**more: str) -> Any:
+        return own.request(
+            "POST",
+            "/grasp",
+            params={**question, **more},
+            content=body,
+            headers={"Content-Type": "application/x-npz"},
+        )
+
+    refused = ask()
+    assert refused.status_code == 422
+    assert "pose_of=tcp" in refused.json()["error"]["message"]
+    grasps = ask(pose_of="tcp").json()["grasps"]
+    assert grasps
+    assert grasps[0]["pre_grasp_posture"]["points"] == []
+    assert ask(format="pose_array").json()["pose_of"] == "tcp"
+    assert ask(format="graspnet").json()["grasps"]

@@ -252,6 +252,16 @@ def test_keys_open_it_as_they_open_post_grasp(tmp_path: Path) -> None:
     assert int(again.headers["retry-after"]) > 0
 
 
+def test_a_full_queue_sends_away_as_it_does_from_post_grasp() -> None:
+    app = gateway(max_running=1, max_waiting=0)
+    app.state.admission.running = 1  # somebody is being served
+    with in_process(app) as client:
+        refused = post(client, question())
+    assert (refused.status_code, refused.json()["code"]) == (429, "too_busy")
+    assert refused.json()["details"]["stage"] == "gateway"
+    assert int(refused.headers["retry-after"]) > 0
+
+
 @pytest.fixture(autouse=True)
 def _no_settings_of_the_shell(monkeypatch: pytest.MonkeyPatch) -> None:
     for name in ("SPARGE_STAGE_SECRET", "SPARGE_GATEWAY_API_KEYS_FILE", "SPARGE_GATEWAY_INSECURE"):
