@@ -26,7 +26,8 @@ SPARGE = re.compile(r"^(?:\.venv/bin/)?sparge(?=\s|$)")
 MODULE = re.compile(r"^(?:\.venv/bin/)?python -m (?P<name>experiments\.\w+)(?=\s|$)")
 EXPORT = re.compile(r"^export (\w+)=(\S+)$")
 CHANGES_THE_MACHINE = re.compile(
-    r"(?:^|[|;&]\s*)(?:sudo|apt|apt-get|docker|git|kind|kubectl|make|pip|rm|(?:\S+/)?pip)\s"
+    r"(?:^|[|;&]\s*)(?:sudo|apt|apt-get|docker|git|kind|kubectl|make|rm|"
+    r"(?:\S+/)?pip|(?:\S+/)?python3? -m pip)\s"
 )
 TIMEOUT_S = 120
 CURL = "silent\nshow-error\nfail-with-body\n"
