@@ -11,9 +11,17 @@ from services.gateway.pipeline import Outcome
 from services.gateway.request import GraspRequest
 from services.gateway.settings import GatewaySettings
 from shared.geometry.rotation import matrix_from_quaternion
-from shared.schemas.answer import Grasp, GraspAnswer, LabelledPrimitive, Scene
+from shared.schemas.answer import (
+    Grasp,
+    GraspAnswer,
+    LabelledPrimitive,
+    RejectedGrasp,
+    Rejection,
+    Scene,
+)
 from shared.schemas.grasp import Pose
 from shared.schemas.primitive import superquadric_rows
+from shared.schemas.rejection import WHY_REJECTED
 from shared.schemas.task import Reason
 from shared.wire import Message
 from shared.wire.npz import write_npz
@@ -46,6 +54,7 @@ def compose(
             for each in outcome.recovered.primitives
         ),
         grasps=tuple(_grasp(row, up, settings) for row in outcome.grasps),
+        rejected=_rejected(outcome),
         explanation=decision.explanation,
         scene=Scene(
             plane=scene.plane,
@@ -94,6 +103,21 @@ def _grasp(row: NDArray[np.float64], up: NDArray[np.float64], settings: GatewayS
         retreat=_pose(after, quaternion),
         width=float(width),
         score=float(np.clip(score, 0, 1)),
+    )
+
+
+def _rejected(outcome: Outcome) -> tuple[RejectedGrasp, ...]:
+    """Return the hand poses that were left out, where some were asked for."""
+    selected = outcome.selected
+    if selected is None or selected.rejected_poses is None:
+        return ()
+    return tuple(
+        RejectedGrasp(
+            pose=_pose(row[:3], row[3:7]),
+            width=float(row[7]),
+            reason=Rejection(code=code, message=WHY_REJECTED[code]),
+        )
+        for row, code in zip(selected.rejected_poses, selected.rejected_reasons, strict=True)
     )
 
 

@@ -29,6 +29,7 @@ from shared.schemas.grasp import (
     RegionRequest,
     RegionResponse,
     SelectRequest,
+    SelectResponse,
 )
 from shared.schemas.gripper import Gripper, ParallelGripper
 from shared.schemas.primitive import (
@@ -52,16 +53,21 @@ _Named = tuple[str, str, str]
 
 @dataclass(frozen=True)
 class Outcome:
-    """What the stages answered; `proposed` is None when there was no region to hold."""
+    """What the stages answered; no grasps are asked for where there is no region to hold."""
 
     scene: PerceiveResponse
     recovered: RecoverResponse
     decision: DecideResponse
     assigned: RegionResponse
     proposed: ProposeResponse | None
-    grasps: np.ndarray
+    selected: SelectResponse | None
     gripper: Gripper
     timings_ms: dict[str, float]
+
+    @property
+    def grasps(self) -> np.ndarray:
+        """Grasp rows (G, 9)."""
+        return np.empty((0, 9)) if self.selected is None else self.selected.grasps
 
 
 @dataclass
@@ -129,11 +135,11 @@ class Pipeline:
                 point_primitive=recovered.point_primitive,
             ),
         )
-        proposed, grasps = None, np.empty((0, 9))
+        proposed, selected = None, None
         if assigned.point_region.any() and request.parameters.max_grasps > 0:
-            proposed, grasps = await self._grasp(run, request, scene, recovered, assigned)
+            proposed, selected = await self._grasp(run, request, scene, recovered, assigned)
         return Outcome(
-            scene, recovered, decision, assigned, proposed, grasps, gripper, run.timings_ms
+            scene, recovered, decision, assigned, proposed, selected, gripper, run.timings_ms
         )
 
     async def _perceive(self, run: _Run, request: GraspRequest) -> tuple[Gripper, PerceiveResponse]:
@@ -251,7 +257,7 @@ class Pipeline:
         scene: PerceiveResponse,
         recovered: RecoverResponse,
         assigned: RegionResponse,
-    ) -> tuple[ProposeResponse, np.ndarray]:
+    ) -> tuple[ProposeResponse, SelectResponse]:
         proposed = await run.call(
             PROPOSE,
             ProposeRequest(
@@ -265,6 +271,7 @@ class Pipeline:
                 gripper=request.parameters.gripper,
                 samples=self._settings.samples,
                 seed=request.parameters.seed,
+                rejected=request.parameters.rejected,
             ),
         )
         selected = await run.call(
@@ -276,6 +283,10 @@ class Pipeline:
                 on_region=proposed.on_focus,
                 keeps_clear=proposed.keeps_clear,
                 max_grasps=request.parameters.max_grasps,
+                rejected=request.parameters.rejected,
+                rejected_poses=proposed.rejected_poses,
+                rejected_reasons=proposed.rejected_reasons,
+                seed=request.parameters.seed,
             ),
         )
-        return proposed, selected.grasps
+        return proposed, selected

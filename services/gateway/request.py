@@ -13,6 +13,7 @@ from shared.schemas.fields import TaskText, Vector3
 from shared.schemas.formats import Format
 from shared.schemas.point_cloud2 import PointCloud2, cloud_points, is_point_cloud2
 from shared.schemas.primitive import EmsParameters, Method
+from shared.schemas.rejection import Examples
 from shared.schemas.ros import RosTime
 from shared.schemas.scene import InputKind, View
 from shared.schemas.task import RuleSet, Version
@@ -45,6 +46,8 @@ class GraspParameters(Message):
     recovery: EmsParameters | None = None
     """Parameters of the method `ems`, instead of the backend's own."""
     explain: bool = True
+    rejected: Examples = 0
+    """So many hand poses that were considered and left out are in the answer, with the reason."""
     frame_id: Annotated[str, Field(min_length=1, max_length=128)] = "camera"
     format: Format = "sparge"
     """Which tool's format the answer is in."""
@@ -59,6 +62,12 @@ class GraspParameters(Message):
     def _parameters_of_the_method(self) -> Self:
         if self.recovery is not None and self.method == "parts":
             raise ValueError("recovery holds parameters of the method ems, but method is parts")
+        return self
+
+    @model_validator(mode="after")
+    def _rejected_in_the_format(self) -> Self:
+        if self.rejected and self.format != "sparge":
+            raise ValueError(f"format={self.format} has no place for rejected hand poses")
         return self
 
     @model_validator(mode="after")

@@ -2,15 +2,15 @@
 
 from __future__ import annotations
 
-from collections import Counter
-
 import numpy as np
 
 from services.grasp_proposal.boxes import support_clearance
 from services.grasp_proposal.diversity import Likeness, distinct
+from services.grasp_proposal.examples import keep_placed, keep_unlike
 from services.grasp_proposal.hand import Hand
 from services.grasp_proposal.orientations import hypothesise
 from services.grasp_proposal.placements import Placements
+from services.grasp_proposal.rejections import Rejections
 from services.grasp_proposal.scorer import promise, tool_centre
 from services.grasp_proposal.search import search
 from services.grasp_proposal.surface import local_frames
@@ -27,7 +27,7 @@ def candidates(
     hand: Hand,
     samples: int,
     rng: np.random.Generator,
-    rejected: Counter[str],
+    rejected: Rejections,
     turn_deg: float = 0.0,
 ) -> Placements:
     """Search around sampled points and keep promising hands that are unlike each other.
@@ -36,7 +36,7 @@ def candidates(
     ----------
     samples : int
         Points in focus that are drawn; all of them, where there are no more.
-    rejected : Counter
+    rejected : Rejections
         Every hand pose that is left out is counted here.
     turn_deg : float
         By which all hands are turned further, for another try.
@@ -53,10 +53,14 @@ def candidates(
     opening = np.minimum(placed.right - placed.left + 2 * hand.clearance, hand.max_opening)
     tips, palm = support_clearance(placed, hand, opening, workspace)
     low = (tips < TOUCHES * hand.support_clearance) | (palm < hand.palm_clearance)
-    rejected["collision_support"] += int(low.sum())
+    rejected.counts["collision_support"] += int(low.sum())
+    if rejected.wanted:
+        keep_placed(rejected, "support_plane", hand, placed.take(rejected.some(low)))
     placed = placed.take(~low)
     order = np.argsort(-promise(workspace, hand, placed), kind="stable")
     centres, rotations = tool_centre(placed, hand)[order], placed.rotation[order]
-    kept = order[distinct(centres, rotations, _LOOK_CLOSER, _UNLIKE)]
-    rejected["less_promising"] += len(order) - len(kept)
-    return placed.take(np.sort(kept))
+    kept = distinct(centres, rotations, _LOOK_CLOSER, _UNLIKE)
+    rejected.counts["less_promising"] += len(order) - len(kept)
+    if rejected.wanted:
+        keep_unlike(rejected, hand, placed, order, kept, _LOOK_CLOSER)
+    return placed.take(np.sort(order[kept]))

@@ -11,7 +11,12 @@ from shared.jit import kernel
 
 Array = NDArray[np.float64]
 Bins = NDArray[np.int32]
+Fates = NDArray[np.int8]
 Mask = NDArray[np.bool_]
+
+
+UNTRIED, GOOD, TOO_WIDE, COLLIDES = 0, 1, 2, 3
+"""What became of a hand at one depth."""
 
 
 class Reach(NamedTuple):
@@ -39,16 +44,15 @@ class Found(NamedTuple):
 
     `depth` is the index, -1 for none; the second is -1 as well where it would be the first.
     There the part covers `left` bins to the left of the sample's own and `right` to the
-    right, and begins at `front` (metres along the approach).
+    right, and begins at `front` (metres along the approach). `fate` (H, D) says what became
+    of every depth.
     """
 
     depth: Bins
     left: Bins
     right: Bins
     front: Array
-    good: int
-    too_wide: int
-    collides: int
+    fate: Fates
 
 
 @kernel
@@ -82,8 +86,8 @@ def place_hands(
     right, front = np.zeros((hands, 2), dtype=np.int32), np.zeros((hands, 2))
     around, inside = np.empty((3, len(surface))), np.empty(len(surface), dtype=np.int32)
     profile = np.empty(2 * reach.half_bins + 1)
+    fate = np.full((hands, depths), UNTRIED, dtype=np.int8)
     count, centre = 0, -1
-    good = too_wide = collides = 0
     for h in range(hands):
         if of_sample[h] != centre:
             centre = of_sample[h]
@@ -98,15 +102,15 @@ def place_hands(
             to_left = _first_gap(profile, reach.half_bins, -1, deepest, reach.free_bins)
             width = (to_left + to_right + 1) * reach.bin_size
             if to_right < 0 or to_left < 0 or width > reach.max_width:
-                too_wide += 1
+                fate[h, d] = TOO_WIDE
                 continue
             nearest = np.inf
             for k in range(reach.half_bins - to_left, reach.half_bins + to_right + 1):
                 nearest = min(nearest, profile[k])
             if not nearest > tips[h, d] - reach.depth_behind_tip:
-                collides += 1
+                fate[h, d] = COLLIDES
                 continue
-            good += 1
+            fate[h, d] = GOOD
             engaged = min(tips[h, d] - nearest, reach.good_engagement) / reach.good_engagement
             value = engaged * (1.0 - 0.5 * width / reach.max_opening)
             for which in range(2):  # depths rise: the last good one is the deepest
@@ -117,7 +121,7 @@ def place_hands(
             most = max(most, value)
         if depth[h, 1] == depth[h, 0]:
             depth[h, 1] = -1
-    return Found(depth, left, right, front, good, too_wide, collides)
+    return Found(depth, left, right, front, fate)
 
 
 @kernel

@@ -2,7 +2,7 @@
 
 from __future__ import annotations
 
-from collections import Counter
+from typing import Any
 
 import numpy as np
 from numpy.typing import NDArray
@@ -13,9 +13,11 @@ from services.grasp_proposal.closing_region import upright
 from services.grasp_proposal.contacts import Contacts, concatenated
 from services.grasp_proposal.cup import Cup
 from services.grasp_proposal.diversity import distinct
+from services.grasp_proposal.examples import keep_unlike
 from services.grasp_proposal.hand import Hand
 from services.grasp_proposal.learned import LearnedScorer
 from services.grasp_proposal.passing import passing
+from services.grasp_proposal.rejections import Rejections
 from services.grasp_proposal.scorer import tool_centre
 from services.grasp_proposal.settings import GraspProposalSettings
 from services.grasp_proposal.suction import propose_suction
@@ -81,7 +83,7 @@ class GraspProposer:
         gripper = choose_gripper(self._grippers, request.gripper)
         workspace = build_workspace(request)
         check_deadline()
-        rejected: Counter[str] = Counter()
+        rejected = Rejections(request.rejected, request.seed)
         rng = np.random.default_rng(request.seed)
         if isinstance(gripper, SuctionGripper):
             cup = Cup.of(gripper, self._settings)
@@ -95,17 +97,18 @@ class GraspProposer:
             hand = Hand.of(gripper, self._settings)
             contacts = _seek(workspace, hand, request.samples, rng, rejected)
             rows, on_focus, clear = self._answer(workspace, hand, contacts, rejected)
-        left_out = {reason: count for reason, count in sorted(rejected.items()) if count}
+        left_out = {reason: count for reason, count in sorted(rejected.counts.items()) if count}
         return ProposeResponse(
             grasps=rows,
             on_focus=on_focus,
             keeps_clear=clear,
             considered=len(rows) + sum(left_out.values()),
             rejected=left_out,
+            **_examples(workspace, rejected),
         )
 
     def _answer(
-        self, workspace: Workspace, hand: Hand, contacts: Contacts, rejected: Counter[str]
+        self, workspace: Workspace, hand: Hand, contacts: Contacts, rejected: Rejections
     ) -> tuple[Array, Array, NDArray[np.bool_]]:
         """Return grasp rows (G, 9), what they hold in focus (G, 3), and if they keep clear (G,)."""
         if not len(contacts.width):
@@ -120,8 +123,12 @@ class GraspProposer:
         contacts = contacts.take(order)
         rotations = upright(contacts.placed.rotation)
         centres = tool_centre(contacts.placed, hand)
-        kept = distinct(centres, rotations, self._settings.max_grasps)
-        rejected["duplicate"] += len(order) - len(kept)
+        limit = self._settings.max_grasps
+        kept = distinct(centres, rotations, limit)
+        rejected.counts["duplicate"] += len(order) - len(kept)
+        if rejected.wanted:
+            every = np.arange(len(order))
+            keep_unlike(rejected, hand, contacts.placed, every, kept, limit)
         contacts = contacts.take(kept)
         rows = _rows(workspace, centres[kept], rotations[kept], contacts.width, scores[order][kept])
         shares = [contacts.in_focus, contacts.left_in_focus, contacts.right_in_focus]
@@ -145,12 +152,22 @@ def _rows(
     )
 
 
+def _examples(workspace: Workspace, rejected: Rejections) -> dict[str, Any]:
+    """Return the answer's fields about hand poses that were left out, where some are wanted."""
+    if not rejected.wanted:
+        return {}
+    poses, reasons = rejected.examples()
+    rotations = upright(poses.rotations)
+    rows = _rows(workspace, poses.centres, rotations, poses.widths, np.zeros(len(reasons)))
+    return {"rejected_poses": rows[:, :-1], "rejected_reasons": reasons}
+
+
 def _seek(
     workspace: Workspace,
     hand: Hand,
     samples: int,
     rng: np.random.Generator,
-    rejected: Counter[str],
+    rejected: Rejections,
 ) -> Contacts:
     """Return the hands that pass; while they are few, from more samples and turns."""
     found = [

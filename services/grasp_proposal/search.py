@@ -9,7 +9,6 @@ what lies between the nearest two such places left and right of the sample.
 
 from __future__ import annotations
 
-from collections import Counter
 from concurrent.futures import ThreadPoolExecutor
 
 import numpy as np
@@ -18,7 +17,9 @@ from numpy.typing import NDArray
 from services.grasp_proposal.hand import Hand
 from services.grasp_proposal.orientations import Hands
 from services.grasp_proposal.placements import Placements
-from services.grasp_proposal.placing import Found, Reach, place_hands
+from services.grasp_proposal.placing import COLLIDES, GOOD, TOO_WIDE, Found, Reach, place_hands
+from services.grasp_proposal.rejections import Rejections
+from services.grasp_proposal.search_examples import SearchExamples
 from services.grasp_proposal.workspace import Workspace
 
 Array = NDArray[np.float64]
@@ -37,7 +38,7 @@ a core is free. More threads than one, for several requests at once."""
 
 
 def search(
-    workspace: Workspace, hand: Hand, points: Array, hands: Hands, rejected: Counter[str]
+    workspace: Workspace, hand: Hand, points: Array, hands: Hands, rejected: Rejections
 ) -> Placements:
     """Return at most two placements per hand: the depth that holds the part best, and the deepest.
 
@@ -47,19 +48,24 @@ def search(
         Where the hands are tried.
     hands : Hands
         K orientations at each.
-    rejected : Counter
+    rejected : Rejections
         Every hand pose (orientation and depth) that is left out is counted here.
     """
-    sample = np.nonzero(hands.possible)[0]
+    sample = np.ascontiguousarray(np.nonzero(hands.possible)[0])
     rotation, origin = hands.rotations[hands.possible], points[sample]
     tip, tried = _depths(workspace, hand, rotation, origin)
-    rejected["collision_support"] += int((~hands.possible).sum())
-    rejected["collision_support"] += int((~tried.any(axis=1)).sum())
-    found = _placed(workspace.coarse, points, sample, rotation, tip, tried, _reach(hand))
+    counts, reach = rejected.counts, _reach(hand)
+    counts["collision_support"] += int((~hands.possible).sum())
+    counts["collision_support"] += int((~tried.any(axis=1)).sum())
+    found = _placed(workspace.coarse, points, sample, rotation, tip, tried, reach)
     rows, which = np.nonzero(found.depth >= 0)
-    rejected["too_wide"] += found.too_wide
-    rejected["collision_object"] += found.collides
-    rejected["other_depth_better"] += found.good - len(rows)
+    counts["too_wide"] += int((found.fate == TOO_WIDE).sum())
+    counts["collision_object"] += int((found.fate == COLLIDES).sum())
+    counts["other_depth_better"] += int((found.fate == GOOD).sum()) - len(rows)
+    if rejected.wanted:
+        examples = SearchExamples(rejected, workspace.coarse, hand, points, reach)
+        examples.impossible(hands)
+        examples.tried(rotation, sample, tip, tried, found)
     return Placements(
         rotation[rows],
         origin[rows],
@@ -96,9 +102,7 @@ def _placed(
         left=np.concatenate([first.left, second.left]),
         right=np.concatenate([first.right, second.right]),
         front=np.concatenate([first.front, second.front]),
-        good=first.good + second.good,
-        too_wide=first.too_wide + second.too_wide,
-        collides=first.collides + second.collides,
+        fate=np.concatenate([first.fate, second.fate]),
     )
 
 

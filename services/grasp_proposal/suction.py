@@ -9,7 +9,6 @@ since a surface of radius R falls by r**2 / 2R over a lip of radius r.
 
 from __future__ import annotations
 
-from collections import Counter
 from typing import NamedTuple
 
 import numpy as np
@@ -17,7 +16,9 @@ from numpy.typing import NDArray
 
 from services.grasp_proposal.cup import Cup
 from services.grasp_proposal.diversity import distinct
+from services.grasp_proposal.rejections import Rejections
 from services.grasp_proposal.seal import SECTORS, Seal, seal
+from services.grasp_proposal.suction_examples import SuctionExamples
 from services.grasp_proposal.workspace import Workspace
 from shared.geometry.rotation import unit
 
@@ -43,7 +44,7 @@ def propose_suction(
     cup: Cup,
     samples: int,
     rng: np.random.Generator,
-    rejected: Counter[str],
+    rejected: Rejections,
     limit: int,
 ) -> Cups:
     """Return at most `limit` places where the cup seals, touches nothing else and holds.
@@ -52,7 +53,7 @@ def propose_suction(
     ----------
     samples : int
         Points in focus that are tried.
-    rejected : Counter
+    rejected : Rejections
         Gets one count per place left out: `no_seal`, `collision_object`,
         `collision_support`, `collision_obstacle`, `too_heavy`, `duplicate`.
     """
@@ -71,27 +72,33 @@ def propose_suction(
     )
     margin = _margin(workspace, cup, centres, rotations)
     low = cup.clearance(centres, rotations, workspace) < cup.support_clearance
+    rising = np.zeros(len(centres), dtype=np.bool_)
     if workspace.up is not None:
-        low |= rotations[:, :, 2] @ workspace.up > _STEEPEST_RISE
+        rising = rotations[:, :, 2] @ workspace.up > _STEEPEST_RISE
+    above = 2 * cup.compliance
+    examples = SuctionExamples(rejected, workspace, cup, centres, rotations, above)
     failures = {
         "no_seal": (measured.covered < SECTORS)
         | (measured.gap > cup.compliance)
         | (measured.bump > cup.compliance),
-        "collision_support": low,
-        "collision_object": cup.hits(centres, rotations, workspace.points, 2 * cup.compliance),
+        "collision_support": low | rising,
+        "collision_object": cup.hits(centres, rotations, workspace.points, above),
         "collision_obstacle": cup.hits(centres, rotations, workspace.obstacles, 0.0),
         "too_heavy": margin < _LEAST_MARGIN,
     }
     good = np.ones(len(centres), dtype=np.bool_)
     for reason, failed in failures.items():
-        rejected[reason] += int((good & failed).sum())
+        rejected.counts[reason] += int((good & failed).sum())
+        examples.failed(reason, good & failed, rising)
         good &= ~failed
     rows = np.flatnonzero(good)
     scores = _score(cup, measured, margin)[rows]
     order = rows[np.argsort(-scores, kind="stable")]
     round_cups = np.repeat(rotations[order][:, :, 2:], 3, axis=2)  # a turn about z changes nothing
-    kept = order[distinct(centres[order], round_cups, limit)]
-    rejected["duplicate"] += len(order) - len(kept)
+    unlike = distinct(centres[order], round_cups, limit)
+    rejected.counts["duplicate"] += len(order) - len(unlike)
+    examples.alike(order, unlike, limit)
+    kept = order[unlike]
     return Cups(
         centres[kept],
         rotations[kept],

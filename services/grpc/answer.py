@@ -6,7 +6,14 @@ from services.grpc.enums import number
 from services.grpc.generated import sparge_pb2 as pb
 from services.grpc.geometry import plane, pose, vector
 from services.grpc.maybe import maybe
-from shared.schemas.answer import Grasp, GraspAnswer, KeptExplanation, LabelledPrimitive, Scene
+from shared.schemas.answer import (
+    Grasp,
+    GraspAnswer,
+    KeptExplanation,
+    LabelledPrimitive,
+    RejectedGrasp,
+    Scene,
+)
 from shared.schemas.primitive import Deformation
 from shared.schemas.task import Condition, Explanation, Reason, Region, RuleTrace
 
@@ -27,6 +34,7 @@ def grasp_answer(of: GraspAnswer) -> pb.GraspAnswer:
         alternatives=map(_region, of.alternatives),
         primitives=map(_primitive, of.primitives),
         grasps=map(_grasp, of.grasps),
+        rejected=map(_rejected, of.rejected),
         explanation=maybe(_explanation, of.explanation),
         scene=_scene(of.scene),
         timings_ms=of.timings_ms,
@@ -85,6 +93,11 @@ def _grasp(of: Grasp) -> pb.Grasp:
         width=of.width,
         score=of.score,
     )
+
+
+def _rejected(of: RejectedGrasp) -> pb.RejectedGrasp:
+    reason = pb.Rejection(code=of.reason.code, message=of.reason.message)
+    return pb.RejectedGrasp(pose=pose(of.pose), width=of.width, reason=reason)
 
 
 def _explanation(of: Explanation) -> pb.Explanation:

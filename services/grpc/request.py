@@ -17,7 +17,7 @@ from shared.wire import JSON, NPZ
 from shared.wire.codec import ENVELOPE
 from shared.wire.npz import write_npz
 
-_PLAIN = ("gripper", "max_grasps", "seed", "frame_id")
+_PLAIN = ("gripper", "max_grasps", "seed", "frame_id", "rejected")
 _VECTORS = ("viewpoint", "target")
 _CHOICES = {
     "reasoning": pb.Reasoning,

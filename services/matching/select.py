@@ -7,6 +7,7 @@ from numpy.typing import NDArray
 from scipy.spatial import cKDTree
 
 from services.matching.checks import check_finite
+from services.matching.left_out import left_out
 from shared.errors import EmptyCloud, InvalidInput
 from shared.schemas.grasp import SelectRequest, SelectResponse
 
@@ -27,12 +28,12 @@ def select_grasps(request: SelectRequest) -> SelectResponse:
     A grasp whose way in comes near the rest of the object is worth a fifth less: where
     another is about as good, the parts that the task needs stay free. Equals keep the order
     of the request. `outside_region` counts all candidates that hold another part, also
-    beyond `max_grasps`.
+    beyond `max_grasps`. Where rejected hand poses are asked for, see `left_out`.
 
     Raises
     ------
     InvalidInput
-        Non-finite points or grasps, or a region mask, shares or ways of another length.
+        Non-finite points or grasps, or a region mask, shares, ways or reasons of another length.
     EmptyCloud
         Grasps, but no point that they could hold.
     """
@@ -57,6 +58,7 @@ def select_grasps(request: SelectRequest) -> SelectResponse:
         grasps=grasps[chosen],
         indices=chosen.astype(np.int32),
         outside_region=int((~inside).sum()),
+        **left_out(request, inside, chosen),
     )
 
 

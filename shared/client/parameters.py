@@ -34,6 +34,8 @@ class GraspParameters(TypedDict, total=False):
     recovery: EmsParameters | Mapping[str, Any] | str | None
     """Parameters of the method `ems`: a message, or a mapping or JSON of its names."""
     explain: bool
+    rejected: int
+    """How many hand poses that were left out the answer holds, `answer.rejected`; 0: none."""
     frame_id: str
     """Name of the view's frame; the answer's poses are in it."""
     intrinsics: ArrayLike | None

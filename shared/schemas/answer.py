@@ -2,6 +2,7 @@
 
 from __future__ import annotations
 
+import operator
 from typing import Annotated
 
 from pydantic import Field
@@ -9,6 +10,7 @@ from pydantic import Field
 from shared.schemas.fields import Direction
 from shared.schemas.grasp import Pose
 from shared.schemas.primitive import Method, Primitive
+from shared.schemas.rejection import RejectionCode
 from shared.schemas.route import Route
 from shared.schemas.scene import SupportPlane
 from shared.schemas.task import Explanation, Reason, Region, Version
@@ -32,6 +34,22 @@ class Grasp(Message):
     width: float
     """Opening in metres that the grasp needs."""
     score: Annotated[float, Field(ge=0, le=1)]
+
+
+class Rejection(Message):
+    """Why a hand pose was left out; the codes are listed in docs/rejected.md."""
+
+    code: RejectionCode
+    message: str
+
+
+class RejectedGrasp(Message):
+    """A hand pose that was considered and left out, in the input's frame."""
+
+    pose: Pose
+    width: float
+    """Opening in metres that it would need; where it is `too_wide`, at least so much."""
+    reason: Rejection
 
 
 class Scene(Message):
@@ -67,6 +85,8 @@ class GraspAnswer(Message):
     alternatives: tuple[Region, ...]
     primitives: tuple[LabelledPrimitive, ...]
     grasps: tuple[Grasp, ...]
+    rejected: Annotated[tuple[RejectedGrasp, ...], Field(exclude_if=operator.not_)] = ()
+    """Examples of hand poses that were left out, where some were asked for."""
     explanation: Explanation | None
     scene: Scene
     timings_ms: dict[str, float]

@@ -21,6 +21,7 @@ from shared.schemas.fields import (
 )
 from shared.schemas.gripper import GripperList
 from shared.schemas.primitive import Primitive
+from shared.schemas.rejection import Examples, LeftOut, LeftOutFor, RejectedRows, RejectionCode
 from shared.schemas.route import Nothing, Route
 from shared.schemas.scene import SupportPlane
 from shared.wire import ArrayField, Message
@@ -51,6 +52,8 @@ class ProposeRequest(Message):
     gripper: str = "panda"
     samples: Annotated[int, Field(ge=1, le=5000)] = 300
     seed: Annotated[int, Field(ge=0, lt=2**32)] = 0
+    rejected: Examples = 0
+    """So many of the hand poses that are left out are in the answer, too."""
 
 
 class ProposeResponse(Message):
@@ -65,6 +68,10 @@ class ProposeResponse(Message):
     considered: int
     rejected: dict[str, int]
     """How many hand poses were left out, by reason."""
+    rejected_poses: LeftOut = None
+    """Some of them, as the request asked for, spread over reasons and places."""
+    rejected_reasons: LeftOutFor = ()
+    """Why each of them was left out."""
 
 
 class RegionRequest(Message):
@@ -99,6 +106,15 @@ class SelectRequest(Message):
     keeps_clear: Mask | None = None
     """Which grasps stay away from the rest of the object: they go first among equals."""
     max_grasps: Annotated[int, Field(ge=0, le=100)] = 10
+    rejected: Examples = 0
+    """So many hand poses that are not among the grasps are in the answer, too: of those that
+    are left out here, and of `rejected_poses`."""
+    rejected_poses: RejectedRows | None = None
+    """Hand poses that the proposer left out."""
+    rejected_reasons: tuple[RejectionCode, ...] = ()
+    """Why it did, one for each."""
+    seed: Annotated[int, Field(ge=0, lt=2**32)] = 0
+    """Chooses among the hand poses that are left out; grasps do not depend on it."""
 
 
 class SelectResponse(Message):
@@ -109,6 +125,10 @@ class SelectResponse(Message):
     """Row of each in the request."""
     outside_region: int
     """How many candidates held another part."""
+    rejected_poses: LeftOut = None
+    """Hand poses that are not among the grasps, as the request asked for."""
+    rejected_reasons: LeftOutFor = ()
+    """Why each of them is not."""
 
 
 LIST_GRIPPERS = Route(

@@ -4,12 +4,14 @@ from __future__ import annotations
 
 import re
 from pathlib import Path
+from typing import get_args
 
 import pytest
 
 from experiments.catalogue import CATALOGUE, build
 from services.reasoning.reasons import CODES
 from shared.errors import SpargeError
+from shared.schemas.rejection import WHY_REJECTED, RejectionCode
 from shared.settings import PROJECT_ROOT
 
 DOCS = PROJECT_ROOT / "docs"
@@ -33,6 +35,10 @@ def test_the_reasons_are_those_of_the_code() -> None:
     gateway = (PROJECT_ROOT / "services" / "gateway" / "answer.py").read_text()
     for code in reasons - CODES:
         assert f'"{code}"' in gateway, f"{code} is in no answer"
+
+
+def test_every_reason_to_leave_a_hand_pose_out_is_listed() -> None:
+    assert codes_in(DOCS / "rejected.md") == list(WHY_REJECTED) == list(get_args(RejectionCode))
 
 
 def test_every_code_comes_with_a_cause_and_a_remedy() -> None:

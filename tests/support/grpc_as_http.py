@@ -105,6 +105,10 @@ class GrpcAsHttp:
         return httpx.Response(200, json=plain(answer))
 
 
+ONLY_WHERE_ASKED_FOR = {"sparge.v1.GraspAnswer.rejected"}
+"""Fields that HTTP leaves out where they are empty."""
+
+
 def plain(message: Any) -> Json:
     """Return the JSON of the HTTP interface for a message: every field, None where not set."""
     fields: Json = {}
@@ -112,6 +116,8 @@ def plain(message: Any) -> Json:
         if each.full_name == "sparge.v1.GraspAnswer.points":
             continue
         value = getattr(message, each.name)
+        if each.full_name in ONLY_WHERE_ASKED_FOR and not value:
+            continue
         if each.is_repeated:
             entries = each.message_type and each.message_type.GetOptions().map_entry
             fields[each.name] = dict(value) if entries else [_plain(each, one) for one in value]
@@ -199,7 +205,7 @@ def _fill_parameters(asked: pb.GraspRequest, fields: Json) -> None:
             getattr(asked, name).MergeFrom(_vector(_value(value)))
         elif name == "recovery":
             asked.recovery.MergeFrom(pb.EmsParameters(**_value(value)))
-        elif name in ("max_grasps", "seed", "explain"):
+        elif name in ("max_grasps", "seed", "explain", "rejected"):
             setattr(asked, name, _value(value))
         else:
             setattr(asked, name, value)

@@ -190,7 +190,7 @@ class EmsParameters(_message.Message):
     def __init__(self, outlier_ratio: _Optional[float] = ..., max_iterations: _Optional[int] = ..., tolerance: _Optional[float] = ..., relative_tolerance: _Optional[float] = ..., max_switches: _Optional[int] = ..., adaptive_upper_bound: _Optional[bool] = ..., eps: _Optional[float] = ..., min_points: _Optional[int] = ...) -> None: ...
 
 class GraspRequest(_message.Message):
-    __slots__ = ("task", "points", "depth", "file", "reasoning", "rule_set", "input", "viewpoint", "target", "gripper", "max_grasps", "seed", "method", "recovery", "explain", "frame_id", "per_point")
+    __slots__ = ("task", "points", "depth", "file", "reasoning", "rule_set", "input", "viewpoint", "target", "gripper", "max_grasps", "seed", "method", "recovery", "explain", "frame_id", "rejected", "per_point")
     TASK_FIELD_NUMBER: _ClassVar[int]
     POINTS_FIELD_NUMBER: _ClassVar[int]
     DEPTH_FIELD_NUMBER: _ClassVar[int]
@@ -207,6 +207,7 @@ class GraspRequest(_message.Message):
     RECOVERY_FIELD_NUMBER: _ClassVar[int]
     EXPLAIN_FIELD_NUMBER: _ClassVar[int]
     FRAME_ID_FIELD_NUMBER: _ClassVar[int]
+    REJECTED_FIELD_NUMBER: _ClassVar[int]
     PER_POINT_FIELD_NUMBER: _ClassVar[int]
     task: str
     points: PointCloud
@@ -224,8 +225,9 @@ class GraspRequest(_message.Message):
     recovery: EmsParameters
     explain: bool
     frame_id: str
+    rejected: int
     per_point: bool
-    def __init__(self, task: _Optional[str] = ..., points: _Optional[_Union[PointCloud, _Mapping]] = ..., depth: _Optional[_Union[DepthImage, _Mapping]] = ..., file: _Optional[_Union[CloudFile, _Mapping]] = ..., reasoning: _Optional[_Union[Reasoning, str]] = ..., rule_set: _Optional[_Union[RuleSet, str]] = ..., input: _Optional[_Union[Input, str]] = ..., viewpoint: _Optional[_Union[Vector3, _Mapping]] = ..., target: _Optional[_Union[Vector3, _Mapping]] = ..., gripper: _Optional[str] = ..., max_grasps: _Optional[int] = ..., seed: _Optional[int] = ..., method: _Optional[_Union[Method, str]] = ..., recovery: _Optional[_Union[EmsParameters, _Mapping]] = ..., explain: _Optional[bool] = ..., frame_id: _Optional[str] = ..., per_point: _Optional[bool] = ...) -> None: ...
+    def __init__(self, task: _Optional[str] = ..., points: _Optional[_Union[PointCloud, _Mapping]] = ..., depth: _Optional[_Union[DepthImage, _Mapping]] = ..., file: _Optional[_Union[CloudFile, _Mapping]] = ..., reasoning: _Optional[_Union[Reasoning, str]] = ..., rule_set: _Optional[_Union[RuleSet, str]] = ..., input: _Optional[_Union[Input, str]] = ..., viewpoint: _Optional[_Union[Vector3, _Mapping]] = ..., target: _Optional[_Union[Vector3, _Mapping]] = ..., gripper: _Optional[str] = ..., max_grasps: _Optional[int] = ..., seed: _Optional[int] = ..., method: _Optional[_Union[Method, str]] = ..., recovery: _Optional[_Union[EmsParameters, _Mapping]] = ..., explain: _Optional[bool] = ..., frame_id: _Optional[str] = ..., rejected: _Optional[int] = ..., per_point: _Optional[bool] = ...) -> None: ...
 
 class Deformation(_message.Message):
     __slots__ = ("taper", "bend")
@@ -290,6 +292,24 @@ class Grasp(_message.Message):
     width: float
     score: float
     def __init__(self, pose: _Optional[_Union[Pose, _Mapping]] = ..., pregrasp: _Optional[_Union[Pose, _Mapping]] = ..., retreat: _Optional[_Union[Pose, _Mapping]] = ..., width: _Optional[float] = ..., score: _Optional[float] = ...) -> None: ...
+
+class Rejection(_message.Message):
+    __slots__ = ("code", "message")
+    CODE_FIELD_NUMBER: _ClassVar[int]
+    MESSAGE_FIELD_NUMBER: _ClassVar[int]
+    code: str
+    message: str
+    def __init__(self, code: _Optional[str] = ..., message: _Optional[str] = ...) -> None: ...
+
+class RejectedGrasp(_message.Message):
+    __slots__ = ("pose", "width", "reason")
+    POSE_FIELD_NUMBER: _ClassVar[int]
+    WIDTH_FIELD_NUMBER: _ClassVar[int]
+    REASON_FIELD_NUMBER: _ClassVar[int]
+    pose: Pose
+    width: float
+    reason: Rejection
+    def __init__(self, pose: _Optional[_Union[Pose, _Mapping]] = ..., width: _Optional[float] = ..., reason: _Optional[_Union[Rejection, _Mapping]] = ...) -> None: ...
 
 class Condition(_message.Message):
     __slots__ = ("predicate", "primitive_id", "holds", "measured", "required", "margin", "unit")
@@ -385,7 +405,7 @@ class PointLabels(_message.Message):
     def __init__(self, primitive: _Optional[bytes] = ..., region: _Optional[bytes] = ...) -> None: ...
 
 class GraspAnswer(_message.Message):
-    __slots__ = ("request_id", "task", "reasoning", "rule_set", "gripper", "seed", "frame_id", "found", "reason", "region", "alternatives", "primitives", "grasps", "explanation", "scene", "timings_ms", "points")
+    __slots__ = ("request_id", "task", "reasoning", "rule_set", "gripper", "seed", "frame_id", "found", "reason", "region", "alternatives", "primitives", "grasps", "explanation", "scene", "timings_ms", "points", "rejected")
     class TimingsMsEntry(_message.Message):
         __slots__ = ("key", "value")
         KEY_FIELD_NUMBER: _ClassVar[int]
@@ -410,6 +430,7 @@ class GraspAnswer(_message.Message):
     SCENE_FIELD_NUMBER: _ClassVar[int]
     TIMINGS_MS_FIELD_NUMBER: _ClassVar[int]
     POINTS_FIELD_NUMBER: _ClassVar[int]
+    REJECTED_FIELD_NUMBER: _ClassVar[int]
     request_id: str
     task: str
     reasoning: Reasoning
@@ -427,7 +448,8 @@ class GraspAnswer(_message.Message):
     scene: Scene
     timings_ms: _containers.ScalarMap[str, float]
     points: PointLabels
-    def __init__(self, request_id: _Optional[str] = ..., task: _Optional[str] = ..., reasoning: _Optional[_Union[Reasoning, str]] = ..., rule_set: _Optional[_Union[RuleSet, str]] = ..., gripper: _Optional[str] = ..., seed: _Optional[int] = ..., frame_id: _Optional[str] = ..., found: _Optional[bool] = ..., reason: _Optional[_Union[Reason, _Mapping]] = ..., region: _Optional[_Union[Region, _Mapping]] = ..., alternatives: _Optional[_Iterable[_Union[Region, _Mapping]]] = ..., primitives: _Optional[_Iterable[_Union[Primitive, _Mapping]]] = ..., grasps: _Optional[_Iterable[_Union[Grasp, _Mapping]]] = ..., explanation: _Optional[_Union[Explanation, _Mapping]] = ..., scene: _Optional[_Union[Scene, _Mapping]] = ..., timings_ms: _Optional[_Mapping[str, float]] = ..., points: _Optional[_Union[PointLabels, _Mapping]] = ...) -> None: ...
+    rejected: _containers.RepeatedCompositeFieldContainer[RejectedGrasp]
+    def __init__(self, request_id: _Optional[str] = ..., task: _Optional[str] = ..., reasoning: _Optional[_Union[Reasoning, str]] = ..., rule_set: _Optional[_Union[RuleSet, str]] = ..., gripper: _Optional[str] = ..., seed: _Optional[int] = ..., frame_id: _Optional[str] = ..., found: _Optional[bool] = ..., reason: _Optional[_Union[Reason, _Mapping]] = ..., region: _Optional[_Union[Region, _Mapping]] = ..., alternatives: _Optional[_Iterable[_Union[Region, _Mapping]]] = ..., primitives: _Optional[_Iterable[_Union[Primitive, _Mapping]]] = ..., grasps: _Optional[_Iterable[_Union[Grasp, _Mapping]]] = ..., explanation: _Optional[_Union[Explanation, _Mapping]] = ..., scene: _Optional[_Union[Scene, _Mapping]] = ..., timings_ms: _Optional[_Mapping[str, float]] = ..., points: _Optional[_Union[PointLabels, _Mapping]] = ..., rejected: _Optional[_Iterable[_Union[RejectedGrasp, _Mapping]]] = ...) -> None: ...
 
 class RequestName(_message.Message):
     __slots__ = ("request_id",)

@@ -14,7 +14,14 @@ from services.grasp_proposal.boxes import any_inside
 from services.grasp_proposal.closer_look import CONTINUES, look_closer
 from services.grasp_proposal.eigen import principal_frames
 from services.grasp_proposal.neighbourhood import scatter_of_groups, scatter_within
-from services.grasp_proposal.placing import Reach, place_hands
+from services.grasp_proposal.placing import (
+    COLLIDES,
+    GOOD,
+    TOO_WIDE,
+    UNTRIED,
+    Reach,
+    place_hands,
+)
 from shared.settings import PROJECT_ROOT
 
 Array = NDArray[np.float64]
@@ -104,7 +111,7 @@ def place(surface: Array, tips: list[float], tried: list[bool] | None = None):  
 def test_a_hand_is_placed_around_a_bar(width: float) -> None:
     found = place(bar(width), [0.005, 0.020])
     assert found.depth[0].tolist() == [1, -1]  # the deeper one holds more: it is both
-    assert found.good == 2
+    assert found.fate[0].tolist() == [GOOD, GOOD]
     assert found.front[0, 0] == 0.0
     covered = (found.left[0, 0] + found.right[0, 0] + 1) * REACH.bin_size
     assert width <= covered <= width + 2 * REACH.bin_size
@@ -112,11 +119,11 @@ def test_a_hand_is_placed_around_a_bar(width: float) -> None:
 
 def test_hands_that_do_not_fit() -> None:
     wide = place(bar(0.09), [0.005, 0.020])
-    assert (wide.depth[0].tolist(), wide.too_wide, wide.good) == ([-1, -1], 2, 0)
+    assert (wide.depth[0].tolist(), wide.fate[0].tolist()) == ([-1, -1], [TOO_WIDE] * 2)
     tall = place(np.vstack([bar(0.03), bar(0.01, top=-0.045)]), [0.005, 0.020])
-    assert (tall.depth[0].tolist(), tall.collides, tall.good) == ([-1, -1], 2, 0)
+    assert (tall.depth[0].tolist(), tall.fate[0].tolist()) == ([-1, -1], [COLLIDES] * 2)
     skipped = place(bar(0.03), [0.005, 0.020], [True, False])
-    assert (skipped.depth[0].tolist(), skipped.good) == ([0, -1], 1)
+    assert (skipped.depth[0].tolist(), skipped.fate[0].tolist()) == ([0, -1], [GOOD, UNTRIED])
 
 
 def test_the_deepest_place_is_kept_beside_the_best() -> None:

@@ -2,14 +2,13 @@
 
 from __future__ import annotations
 
-from collections import Counter
-
 import numpy as np
 import pytest
 from numpy.typing import NDArray
 
 from services.grasp_proposal.cup import Cup
 from services.grasp_proposal.proposer import GraspProposer
+from services.grasp_proposal.rejections import Rejections
 from services.grasp_proposal.seal import LIP, SECTORS, seal
 from services.grasp_proposal.settings import GraspProposalSettings
 from services.grasp_proposal.suction import propose_suction
@@ -144,11 +143,11 @@ def test_the_palm_stays_off_the_table() -> None:
 
 def test_too_heavy_for_a_weak_cup() -> None:
     workspace = build_workspace(BOX.request())
-    rejected: Counter[str] = Counter()
+    rejected = Rejections()
     weak = Cup.of(VGC10.model_copy(update={"force": 0.5}), SETTINGS)
     found = propose_suction(workspace, weak, 100, np.random.default_rng(0), rejected, 10)
     assert len(found.scores) == 0
-    assert rejected["too_heavy"] > 10
+    assert rejected.counts["too_heavy"] > 10
 
 
 def test_grasps_are_where_the_focus_is() -> None:

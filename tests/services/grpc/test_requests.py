@@ -43,6 +43,7 @@ def test_every_parameter_arrives_as_it_was_set() -> None:
         recovery=pb.EmsParameters(**PRESETS["simulation"].model_dump()),
         explain=False,
         frame_id="map",
+        rejected=7,
     )
     read = GraspParameters.model_validate(_typed(request.grasp_parameters(message)))
     assert read == GraspParameters(
@@ -59,6 +60,7 @@ def test_every_parameter_arrives_as_it_was_set() -> None:
         recovery=PRESETS["simulation"],
         explain=False,
         frame_id="map",
+        rejected=7,
     )
     mine = {each.name for each, _ in message.ListFields()} | {"explain", "max_grasps"}
     assert mine == GraspParameters.model_fields.keys() - OF_HTTP

@@ -120,3 +120,45 @@ def test_bad_input_is_named() -> None:
         select(grasp, points=LINE + 1e200)
     with pytest.raises(EmptyCloud, match="1 grasps"):
         select(grasp, points=np.empty((0, 3)), point_region=np.empty(0, dtype=bool))
+
+
+def test_says_why_grasps_are_left_out_where_asked() -> None:
+    grasps = grasps_at((0.01, 0.2), (0.15, 0.9), (0.05, 0.7), (0.03, 0.5))
+    before = np.array([[0.1, 0.1, 0.0, 0, 1, 0, 0, 0.08]])
+    asked = {"rejected_poses": before, "rejected_reasons": ("too_wide",), "max_grasps": 2}
+    answer = select(grasps, rejected=10, **asked)
+    assert answer.indices.tolist() == [2, 3]
+    assert answer.rejected_reasons == ("too_wide", "outside_region", "beyond_max_grasps")
+    assert answer.rejected_poses is not None
+    assert np.array_equal(answer.rejected_poses, np.vstack([before, grasps[[1, 0], :8]]))
+    assert len(select(grasps, rejected=2, **asked).rejected_reasons) == 2
+    silent = select(grasps, **asked)
+    assert silent.rejected_poses is None
+    assert "rejected" not in silent.model_dump_json()
+    assert np.array_equal(silent.grasps, answer.grasps)
+
+
+def test_what_is_left_out_follows_the_seed(rng: np.random.Generator) -> None:
+    grasps = grasps_at(*((x, 0.5) for x in rng.uniform(0, 0.2, 80)))
+    one, again, other = (select(grasps, rejected=9, seed=seed) for seed in (1, 1, 2))
+    assert one == again
+    assert one.rejected_poses is not None
+    assert one != other
+    for code, row in zip(one.rejected_reasons, one.rejected_poses, strict=True):
+        assert (code == "outside_region") == (row[0] > 0.095)
+    assert len(np.unique(one.rejected_poses, axis=0)) == 9
+
+
+def test_reasons_that_do_not_fit_the_poses_are_named() -> None:
+    before = np.array([[0.1, 0.1, 0.0, 0, 1, 0, 0, 0.08]])
+    with pytest.raises(InvalidInput, match="0 rejected_reasons for 1 rejected_poses"):
+        select(grasps_at((0.01, 0.2)), rejected=3, rejected_poses=before)
+    with pytest.raises(InvalidInput, match="rejected_poses must be finite"):
+        select(
+            grasps_at((0.01, 0.2)),
+            rejected=3,
+            rejected_poses=np.full_like(before, np.inf),
+            rejected_reasons=("too_wide",),
+        )
+    with pytest.raises(ValueError, match="rejected"):
+        select(grasps_at((0.01, 0.2)), rejected=201)
