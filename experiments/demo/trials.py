@@ -12,6 +12,7 @@ from experiments.demo.scenes import Scene
 from experiments.framework.replay import Replays
 from experiments.framework.scoring import RegionScore, holds, score_region
 from shared.client import GraspResult, Sparge
+from shared.client.trying import until_it_moves
 from shared.schemas.execution import ExecuteRequest, ExecuteResponse
 from shared.schemas.grasp import Pose
 from shared.schemas.task import Version
@@ -141,19 +142,19 @@ def attempt(sparge: Sparge, arm: Replays, scene: Scene, task: str, version: Vers
 
 def _executed(arm: Replays, scene: Scene, trial: Trial, result: GraspResult) -> Trial:
     """Return the trial with what the arm made of its grasps, best first."""
-    for tried, grasp in enumerate(result.grasps, start=1):
-        happened = arm.execute(execution(scene, trial.task, grasp))
-        film = happened.animation
-        trial = replace(
-            trial,
-            tried=tried,
-            in_region=holds(grasp[:3], scene.shown.object_points, scene.shown.truth(trial.task)),
-            executed=happened.model_copy(update={"animation": None}),
-            film=film.tobytes() if film is not None else b"",
-        )
-        if film is not None:  # the arm moved
-            break
-    return trial
+    tried = until_it_moves(
+        arm.execute, (execution(scene, trial.task, grasp) for grasp in result.grasps)
+    )
+    if not tried:
+        return trial
+    grasp, film = result.grasps[len(tried) - 1], tried[-1].animation
+    return replace(
+        trial,
+        tried=len(tried),
+        in_region=holds(grasp[:3], scene.shown.object_points, scene.shown.truth(trial.task)),
+        executed=tried[-1].model_copy(update={"animation": None}),
+        film=film.tobytes() if film is not None else b"",
+    )
 
 
 def execution(scene: Scene, task: str, grasp: NDArray[np.float64]) -> ExecuteRequest:

@@ -14,7 +14,11 @@ from rich.console import Console
 from rich.progress import Progress, SpinnerColumn, TextColumn, TimeElapsedColumn
 
 from shared.client import GraspResult, Sparge, connect
+from shared.client.trying import until_it_moves
+from shared.errors import SpargeError
 from shared.geometry.points import points_from_depth
+from shared.schemas.execution import ExecuteResponse
+from shared.schemas.gripper import Gripper
 from shared.schemas.scene import View
 from shared.wire.codec import validate
 from shared.wire.files import read_cloud_file
@@ -33,10 +37,48 @@ class Question:
 
 @dataclass(frozen=True)
 class Answered:
-    """The answer, and the cloud that it speaks about."""
+    """The answer, the cloud that it speaks about, and what came of its grasps.
 
+    Attributes
+    ----------
+    name : str
+        Of what is seen, for titles.
+    result : GraspResult
+    points : (N, 3) array
+        As the answer counts them, metres.
+    gripper : ParallelGripper or SuctionGripper
+        What the grasps are for.
+    viewpoint : (3,) tuple
+        Position of the sensor in the points' frame.
+    tried : tuple of ExecuteResponse
+        The grasps that were executed, best first; none unless a film was asked for.
+    failure : SpargeError or None
+        What ended the execution; the answer is worth having all the same.
+    """
+
+    name: str
     result: GraspResult
     points: Array
+    gripper: Gripper
+    viewpoint: tuple[float, float, float] = (0.0, 0.0, 0.0)
+    tried: tuple[ExecuteResponse, ...] = ()
+    failure: SpargeError | None = None
+
+    @property
+    def film(self) -> bytes | None:
+        """An animated GIF of the last execution, if anything moved."""
+        animation = self.tried[-1].animation if self.tried else None
+        return None if animation is None else animation.tobytes()
+
+    @property
+    def why_no_film(self) -> str:
+        """In a sentence."""
+        if self.failure is not None:
+            return f"{self.failure.code}: {self.failure.message}"
+        if not self.tried:
+            why = self.result.reason.message if self.result.reason else "the answer has no grasp"
+            return f"there is no grasp to execute: {why}"
+        return f"nothing moved in any of the {len(self.tried)} grasps: {self.tried[-1].message}"
 
     def object_cloud(self) -> tuple[Array, NDArray[np.int16], NDArray[np.bool_]]:
         """Return the object's points (N, 3), their primitive (N,) and whether in the region."""
@@ -48,8 +90,17 @@ class Answered:
         )
 
 
-def ask(question: Question, url: str | None, console: Console) -> Answered:
+def ask(question: Question, url: str | None, console: Console, *, film: bool = False) -> Answered:
     """Return the backend's answer, with a progress display on `console`.
+
+    Parameters
+    ----------
+    question : Question
+    url : str or None
+        Of the backend; None: one in this process.
+    console : Console
+    film : bool
+        Execute the grasps too, best first, until the robot finds a way to one.
 
     Raises
     ------
@@ -71,7 +122,25 @@ def ask(question: Question, url: str | None, console: Console) -> Answered:
             result = sparge.grasp_file(
                 question.file.name, data, question.task, **question.parameters
             )
-    return Answered(result, points)
+            gripper = next(each for each in sparge.grippers() if each.name == result.answer.gripper)
+            tried: tuple[ExecuteResponse, ...] = ()
+            failure: SpargeError | None = None
+            if film:
+                progress.update(step, description="trying the grasps in simulation")
+                tried, failure = _tried(sparge, result)
+    x, y, z = question.parameters.get("viewpoint") or (0.0, 0.0, 0.0)
+    return Answered(question.file.stem, result, points, gripper, (x, y, z), tried, failure)
+
+
+def _tried(
+    sparge: Sparge, result: GraspResult
+) -> tuple[tuple[ExecuteResponse, ...], SpargeError | None]:
+    """Return what came of the grasps, and the error that ended it, if one did."""
+    requests = (result.execution(rank, animate=True) for rank in range(len(result.ranked)))
+    try:
+        return until_it_moves(sparge.execute, requests), None
+    except SpargeError as error:
+        return (), error
 
 
 @contextlib.contextmanager

@@ -2,6 +2,8 @@
 
 from __future__ import annotations
 
+from collections.abc import Sequence
+
 from rich import box
 from rich.console import Console
 from rich.table import Table
@@ -9,6 +11,7 @@ from rich.text import Text
 
 from shared.client import headline
 from shared.schemas.answer import GraspAnswer
+from shared.schemas.execution import ExecuteResponse
 
 
 def show(answer: GraspAnswer, console: Console) -> None:
@@ -27,6 +30,20 @@ def show(answer: GraspAnswer, console: Console) -> None:
         console.print(Text(answer.explanation.text), highlight=False)
     spent = "  ".join(f"{name} {value:.0f}" for name, value in answer.timings_ms.items())
     console.print(f"[bold]Time[/bold] (ms)  {spent}", highlight=False)
+
+
+def show_tried(tried: Sequence[ExecuteResponse], console: Console) -> None:
+    """Print what came of the grasps that were executed, if any were."""
+    if not tried:
+        return
+    table = Table(title="Tried in simulation", title_justify="left", box=box.SIMPLE_HEAD)
+    for name in ("#", "outcome", ""):
+        table.add_column(name, no_wrap=bool(name))
+    for rank, each in enumerate(tried):
+        colour = "green" if each.success else "red"
+        outcome = each.outcome.replace("_", " ")
+        table.add_row(str(rank), f"[{colour}]{outcome}[/{colour}]", each.message)
+    console.print(table)
 
 
 def _primitives(answer: GraspAnswer) -> Table:

@@ -2,6 +2,7 @@
 
 from __future__ import annotations
 
+import textwrap
 from collections.abc import Sequence
 from pathlib import Path
 
@@ -24,6 +25,8 @@ Array = NDArray[np.float64]
 
 MAX_POINTS = 15_000
 MAX_GRIPPERS = 5
+LINE = 150
+"""Characters of a line under the title."""
 
 
 def draw_answer(
@@ -36,6 +39,7 @@ def draw_answer(
     up: ArrayLike,
     title: str,
     viewpoint: ArrayLike = (0.0, 0.0, 0.0),
+    why: str = "",
 ) -> None:
     """Write a PNG: on the left the recovered parts, on the right where to hold and how.
 
@@ -62,6 +66,8 @@ def draw_answer(
         Above the picture.
     viewpoint : (3,) array_like
         Position of the sensor; the picture is seen from its side.
+    why : str
+        A sentence or two under the title.
     """
     shown = _thinned(np.flatnonzero(np.isfinite(points).all(axis=1)))
     cloud, part = points[shown], point_primitive[shown]
@@ -75,12 +81,14 @@ def draw_answer(
 
     figure = Figure(figsize=(13.0, 6.6), dpi=120, facecolor="white")
     FigureCanvasAgg(figure)
-    figure.suptitle(title, fontsize=17, fontweight="bold", y=0.965)
-    left, right = (figure.add_axes((x, 0.12, 0.48, 0.75)) for x in (0.01, 0.51))
+    figure.suptitle(title, fontsize=17, fontweight="bold", y=0.97)
+    lines = "\n".join(textwrap.wrap(why, LINE, max_lines=2, placeholder=" ..."))
+    figure.text(0.5, 0.895, lines, ha="center", va="center", fontsize=11.5, color="#444444")
+    left, right = (figure.add_axes((x, 0.11, 0.48, 0.7)) for x in (0.01, 0.51))
     limits = view.limits([cloud, *(each.corners for each in hands), *map(vertices_of, primitives)])
     for axes, x, heading in ((left, 0.25, "recovered parts"), (right, 0.75, "where to hold")):
         _set_scene(axes, view, cloud, limits)
-        figure.text(x, 0.885, heading, ha="center", fontsize=13, color="#444444")
+        figure.text(x, 0.82, heading, ha="center", fontsize=13, color="#444444")
 
     colours = [to_rgb(colour_of.get(int(each), NO_PART)) for each in part]
     draw_parts(left, view, primitives, colour_of, front=False)
@@ -94,9 +102,9 @@ def draw_answer(
     _draw_cloud(right, view, cloud, np.where(region[:, None], to_rgb(REGION), to_rgb(REST)), light)
     draw_parts(right, view, primitives, held, front=True)
     for hand in reversed(hands[1:]):
-        draw_hand(right, view, hand, OTHER_GRIPPER, width=1.4, opacity=0.5)
+        draw_hand(right, view, hand, cloud, OTHER_GRIPPER, width=1.4, opacity=0.5)
     for hand in hands[:1]:
-        draw_hand(right, view, hand, GRIPPER, width=4.0, opacity=1.0)
+        draw_hand(right, view, hand, cloud, GRIPPER, width=4.0, opacity=1.0)
     _say_what_is_held(figure, bool(region.any()), grasps)
 
     path.parent.mkdir(parents=True, exist_ok=True)

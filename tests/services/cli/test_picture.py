@@ -12,7 +12,10 @@ from numpy.typing import NDArray
 from PIL import Image
 
 from services.cli.picture import draw_answer
-from services.cli.picture.style import GRIPPER, PART_COLOURS, REGION
+from services.cli.picture.gripper import is_hidden
+from services.cli.picture.style import GRIPPER
+from services.cli.picture.view import View
+from shared.palette import PART_COLOURS, REGION
 from shared.schemas.primitive import Primitive
 from shared.superquadric import Superquadric, surface_mesh
 
@@ -119,3 +122,28 @@ def test_the_same_answer_gives_the_same_picture_in_every_thread(tmp_path: Path) 
     with ThreadPoolExecutor(3) as pool:
         list(pool.map(draw, paths))
     assert len({path.read_bytes() for path in paths}) == 1
+
+
+def test_what_stands_behind_the_cloud_is_hidden() -> None:
+    across, along = np.meshgrid(np.arange(-0.05, 0.05, 0.002), np.arange(-0.05, 0.05, 0.002))
+    sheet = np.column_stack([across.ravel(), along.ravel(), np.full(across.size, 0.8)])
+    view = View.of(sheet, (), None, UP, np.zeros(3))
+    towards_the_eye = view.axes[2]
+    middle = np.array([0.0, 0.0, 0.8])
+    points = middle + np.outer([-0.03, 0.0, 0.03], towards_the_eye)
+    assert is_hidden(points, view, sheet).tolist() == [True, False, False]
+    beside = points + 0.3 * view.axes[0]
+    assert not is_hidden(beside, view, sheet).any()
+    assert not is_hidden(points, view, np.empty((0, 3))).any()
+
+
+def test_a_sentence_stands_under_the_title(tmp_path: Path) -> None:
+    def under_the_title(why: str) -> float:
+        path = tmp_path / "a.png"
+        draw_answer(path, POINTS, PART, PART == 0, PRIMITIVES, GRASP, UP, "t", why=why)
+        with Image.open(path) as image:
+            strip = np.asarray(image.convert("L"))[70:110]
+        return float((strip < 200).mean())
+
+    assert under_the_title("") == 0.0
+    assert under_the_title("Hold it by the handle. " * 40) > under_the_title("Hold it.") > 0.0
