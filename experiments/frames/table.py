@@ -8,7 +8,7 @@ import numpy as np
 
 from shared.grippers import load_grippers
 from shared.grippers.kinematics import advance
-from shared.schemas.gripper import ParallelGripper, SuctionGripper
+from shared.schemas.gripper import Gripper
 
 HEAD = (
     "| gripper | link | TCP in the link: xyz (mm) | rpy (degrees) | closed, farther along z by |\n"
@@ -21,7 +21,7 @@ def offsets() -> str:
     return "\n".join([HEAD, *(row for each in load_grippers().values() for row in _rows(each))])
 
 
-def _rows(gripper: ParallelGripper | SuctionGripper) -> Iterator[str]:
+def _rows(gripper: Gripper) -> Iterator[str]:
     for link in gripper.urdf.links if gripper.urdf else ():
         xyz = ", ".join(f"{1000 * length + 0:.1f}" for length in link.xyz)
         rpy = ", ".join(f"{angle + 0:.0f}" for angle in np.degrees(link.rpy))

@@ -8,13 +8,13 @@ from scipy.spatial.transform import Rotation
 
 from shared.errors import InvalidInput
 from shared.geometry.se3 import inverse, pose_matrix
-from shared.schemas.gripper import ParallelGripper, SuctionGripper
+from shared.schemas.gripper import Gripper
 from shared.schemas.urdf import TCP, Link, Urdf
 
 Matrix = NDArray[np.float64]
 
 
-def choose_link(gripper: ParallelGripper | SuctionGripper, name: str | None) -> Link:
+def choose_link(gripper: Gripper, name: str | None) -> Link:
     """Return a link of the gripper's, None: the one that MoveIt expects the pose of.
 
     The name `tcp` stands for the grasp frame itself.
@@ -48,7 +48,7 @@ def choose_link(gripper: ParallelGripper | SuctionGripper, name: str | None) -> 
     return links[name]
 
 
-def tcp_from_link(gripper: ParallelGripper | SuctionGripper, link: Link, opening: float) -> Matrix:
+def tcp_from_link(gripper: Gripper, link: Link, opening: float) -> Matrix:
     """Return the pose (4, 4) of a link in the grasp frame, with the pads `opening` m apart.
 
     The pads of a linkage move forward as they close, and the grasp frame with them: it

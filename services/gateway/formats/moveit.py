@@ -11,7 +11,7 @@ from services.gateway.formats.poses import poses_of_link, ros_pose
 from services.gateway.settings import GatewaySettings
 from shared.geometry.rotation import matrix_from_quaternion
 from shared.grippers.kinematics import joint_positions
-from shared.schemas.gripper import ParallelGripper, SuctionGripper
+from shared.schemas.gripper import Gripper, ParallelGripper
 from shared.schemas.ros import (
     RosDuration,
     RosGrasp,
@@ -54,7 +54,7 @@ class MoveItWriter:
     """
 
     task: str
-    gripper: ParallelGripper | SuctionGripper
+    gripper: Gripper
     link: Link
     header: RosHeader
     up: Array

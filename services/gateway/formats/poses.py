@@ -7,14 +7,14 @@ from numpy.typing import NDArray
 
 from shared.geometry.se3 import matrix_from_pose, pose_from_matrix
 from shared.grippers.kinematics import tcp_from_link
-from shared.schemas.gripper import ParallelGripper, SuctionGripper
+from shared.schemas.gripper import Gripper
 from shared.schemas.ros import RosPoint, RosPose, RosQuaternion
 from shared.schemas.urdf import TCP, Link
 
 Array = NDArray[np.float64]
 
 
-def poses_of_link(grasps: Array, gripper: ParallelGripper | SuctionGripper, link: Link) -> Array:
+def poses_of_link(grasps: Array, gripper: Gripper, link: Link) -> Array:
     """Return grasps (G, 9) with the poses of `link` while the gripper holds, in place of the TCP's.
 
     Width and score stay. The pads are then as far apart as the part is wide.

@@ -22,7 +22,7 @@ from shared.schemas.formats import (
     MoveItAnswer,
     PoseArrayAnswer,
 )
-from shared.schemas.gripper import ParallelGripper, SuctionGripper
+from shared.schemas.gripper import Gripper, ParallelGripper
 from shared.schemas.ros import RosHeader, RosTime
 from shared.schemas.urdf import TCP
 from shared.wire import Message
@@ -46,7 +46,7 @@ class Rendered:
     grasps: Array
 
 
-def require_fitting(parameters: GraspParameters, gripper: ParallelGripper | SuctionGripper) -> None:
+def require_fitting(parameters: GraspParameters, gripper: Gripper) -> None:
     """Return if grasps of this gripper can be written in the format that was asked for.
 
     Raises
@@ -70,7 +70,7 @@ def render(
     answer: GraspAnswer,
     grasps: Array,
     parameters: GraspParameters,
-    gripper: ParallelGripper | SuctionGripper,
+    gripper: Gripper,
     settings: GatewaySettings,
 ) -> Rendered:
     """Return an answer and its grasps (G, 9) in the format that the parameters name."""
