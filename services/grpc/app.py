@@ -10,6 +10,7 @@ from collections.abc import AsyncIterator
 
 import grpc
 import httpx
+from fastapi import FastAPI
 from grpc_health.v1 import health, health_pb2_grpc
 from grpc_reflection.v1alpha import reflection
 
@@ -19,6 +20,7 @@ from services.grpc.service import SERVICE, handlers
 from services.grpc.settings import GrpcSettings
 from shared.errors import InvalidInput
 from shared.loopback import is_loopback
+from shared.service.exchange import IN_PROCESS
 
 log = logging.getLogger("uvicorn.error")
 """Where services say that they start and stop."""
@@ -74,6 +76,23 @@ async def serving(
             await servicer.enter_graceful_shutdown()
             await server.stop(settings.stop_s)
             log.info("gRPC stopped")
+
+
+def beside(gateway: FastAPI, settings: GrpcSettings, host: str, port: int) -> FastAPI:
+    """Return `gateway`, which serves gRPC as well for as long as it is served itself.
+
+    What `serving` raises then ends its start.
+    """
+    alone = gateway.router.lifespan_context
+    transport = httpx.ASGITransport(gateway, raise_app_exceptions=False, client=IN_PROCESS)
+
+    @contextlib.asynccontextmanager
+    async def lifespan(app: FastAPI) -> AsyncIterator[None]:
+        async with alone(app), serving(settings, host, port, transport):
+            yield
+
+    gateway.router.lifespan_context = lifespan
+    return gateway
 
 
 async def serve_until_stopped(

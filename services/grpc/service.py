@@ -4,9 +4,7 @@ from __future__ import annotations
 
 import asyncio
 import logging
-import re
 import time
-import uuid
 from collections.abc import Awaitable, Callable
 from typing import Any
 
@@ -18,13 +16,12 @@ from services.grpc.calls import CALLS, Call, read_answer
 from services.grpc.generated import sparge_pb2 as pb
 from services.grpc.status import REQUEST_ID_TRAILER, Failure
 from shared.errors import InternalError, SpargeError
-from shared.service.request_id import request_id
+from shared.service.request_id import identified, request_id
 
 DESCRIPTOR = pb.DESCRIPTOR.services_by_name["Sparge"]
 SERVICE: str = DESCRIPTOR.full_name
 _PASSED_ON = ("authorization", "x-api-key", "traceparent", "tracestate")
 """Metadata that are headers of the HTTP interface, too."""
-_VALID_ID = re.compile(r"[A-Za-z0-9._-]{1,64}")
 
 log = logging.getLogger("sparge")
 access = logging.getLogger("sparge.access")
@@ -52,19 +49,23 @@ def _behaviour(name: str, call: Call, gateway: Gateway) -> Behaviour:
     async def behave(message: Any, context: Context) -> Any:
         started = time.perf_counter()
         given = dict(context.invocation_metadata() or ())
-        asked_id = str(given.get(REQUEST_ID_TRAILER, ""))
-        identifier = asked_id if _VALID_ID.fullmatch(asked_id) else uuid.uuid4().hex
+        identifier = identified(str(given.get(REQUEST_ID_TRAILER, "")))
         request_id.set(identifier)
         headers = {key: str(given[key]) for key in _PASSED_ON if key in given}
-        status = grpc.StatusCode.CANCELLED
+        status, code = grpc.StatusCode.CANCELLED, None
         try:
             reply = await _answer(call, message, gateway, identifier, headers, context)
             status = grpc.StatusCode.OK
+        except asyncio.CancelledError:
+            left_s = context.time_remaining()
+            if left_s is not None and left_s <= 0:
+                status = grpc.StatusCode.DEADLINE_EXCEEDED
+            raise
         except Failure as failure:
-            status = failure.status_code
+            status, code = failure.status_code, failure.code
             await context.abort(status, failure.shortened(), failure.trailers())
         finally:
-            _log(name, status, time.perf_counter() - started, context.peer())
+            _log(name, status, code, time.perf_counter() - started, context.peer())
         context.set_trailing_metadata(((REQUEST_ID_TRAILER, identifier),))
         return reply
 
@@ -95,10 +96,17 @@ async def _answer(
         raise Failure.of(fault, identifier) from None
 
 
-def _log(name: str, status: grpc.StatusCode, seconds: float, peer: str) -> None:
+def _log(name: str, status: grpc.StatusCode, code: str | None, seconds: float, peer: str) -> None:
     ms = round(1e3 * seconds, 3)
     access.info(
         "grpc %s %s in %.0f ms",
         *(name, status.name, ms),
-        extra={"service": "grpc", "route": name, "code": status.name, "ms": ms, "client": peer},
+        extra={
+            "service": "grpc",
+            "route": name,
+            "status": status.name,
+            "ms": ms,
+            "client": peer,
+            **({"code": code} if code else {}),
+        },
     )

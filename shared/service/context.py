@@ -9,9 +9,7 @@ from __future__ import annotations
 import asyncio
 import logging
 import math
-import re
 import time
-import uuid
 from collections.abc import Callable
 
 from opentelemetry import trace
@@ -28,11 +26,10 @@ from shared.errors import (
 )
 from shared.service.envelope import error_response
 from shared.service.exchange import ERROR_CODE, Exchange, exchange
-from shared.service.request_id import REQUEST_ID_HEADER, request_id
+from shared.service.request_id import REQUEST_ID_HEADER, identified, request_id
 from shared.service.server_timing import SERVER_TIMING, server_timing
 from shared.settings import ServiceSettings
 
-_VALID_ID = re.compile(r"[A-Za-z0-9._-]{1,64}")
 _DRAIN_FACTOR, _DRAIN_SECONDS = 8, 10.0
 _NOTHING_SENT = 499  # as nginx counts a client that closed the request
 
@@ -59,8 +56,7 @@ class RequestContext:
             await self._app(scope, receive, send)
             return
         headers = Headers(scope=scope)
-        given = headers.get(REQUEST_ID_HEADER, "")
-        identifier = given if _VALID_ID.fullmatch(given) else uuid.uuid4().hex
+        identifier = identified(headers.get(REQUEST_ID_HEADER, ""))
         token = request_id.set(identifier)
         trace.get_current_span().set_attribute("sparge.request_id", identifier)
         started, status, answering, bytes_out = time.perf_counter(), _NOTHING_SENT, False, 0

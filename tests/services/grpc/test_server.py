@@ -4,6 +4,7 @@ from __future__ import annotations
 
 import asyncio
 import contextlib
+import logging
 import threading
 import time
 from collections.abc import Callable, Iterator
@@ -19,7 +20,7 @@ from grpc_reflection.v1alpha.proto_reflection_descriptor_database import (
 
 from services.gateway.keys import Scope, add_key
 from services.grpc import probe
-from services.grpc.app import serving
+from services.grpc.app import beside, serving
 from services.grpc.client import connect, error_of
 from services.grpc.generated import sparge_pb2 as pb
 from services.grpc.settings import GrpcSettings
@@ -27,6 +28,7 @@ from shared.errors import InvalidInput, StageUnavailable, UnknownTask
 from tests.services.gateway.test_access import gateway
 from tests.support.grpc_calls import Through, call, failure, grpc_port, grpc_server
 from tests.support.serving import free_ports, in_process
+from tests.support.serving import serving as serving_http
 
 Code = grpc.StatusCode
 NO_TASKS: dict[str, list[str]] = {"tasks": []}
@@ -91,17 +93,18 @@ class Slow(httpx.AsyncBaseTransport):
         return httpx.Response(200, json=NO_TASKS)
 
 
-def test_nobody_works_on_after_the_deadline() -> None:
+def test_nobody_works_on_after_the_deadline(caplog: pytest.LogCaptureFixture) -> None:
     slow = Slow(60)
-    with grpc_server(slow) as channel:
+    with caplog.at_level(logging.INFO, "sparge.access"), grpc_server(slow) as channel:
         late = failure(channel, "ListTasks", pb.Nothing(), timeout=0.3)
         assert late.code() is Code.DEADLINE_EXCEEDED
         assert slow.left.wait(5)
+    assert "grpc ListTasks DEADLINE_EXCEEDED" in caplog.text
 
 
-def test_a_call_that_is_cancelled_is_given_up() -> None:
+def test_a_call_that_is_cancelled_is_given_up(caplog: pytest.LogCaptureFixture) -> None:
     slow = Slow(60)
-    with grpc_server(slow) as channel:
+    with caplog.at_level(logging.INFO, "sparge.access"), grpc_server(slow) as channel:
         multi = channel.unary_unary(
             "/sparge.v1.Sparge/ListTasks", pb.Nothing.SerializeToString, pb.TaskList.FromString
         )
@@ -109,6 +112,7 @@ def test_a_call_that_is_cancelled_is_given_up() -> None:
         assert slow.asked.wait(5)
         waiting.cancel()
         assert slow.left.wait(5)
+    assert "grpc ListTasks CANCELLED" in caplog.text
 
 
 def test_a_gateway_that_takes_too_long_is_told() -> None:
@@ -285,6 +289,28 @@ def test_other_machines_are_served_only_where_the_gateway_wants_keys() -> None:
         asyncio.run(start(elsewhere, told(503)))
     (port,) = free_ports(1)
     asyncio.run(start("127.0.0.1", httpx.MockTransport(answering([])), port))
+
+
+def test_beside_the_http_interface() -> None:
+    (port,) = free_ports(1)
+    both = beside(gateway(), GrpcSettings(health_s=0.02), "127.0.0.1", port)
+    with serving_http(both) as url, connect(f"127.0.0.1:{port}") as sparge:
+        assert httpx.get(f"{url}/tasks").json() == NO_TASKS
+        assert not sparge.ListTasks(pb.Nothing(), timeout=20).tasks
+        with grpc.insecure_channel(f"127.0.0.1:{port}") as channel:
+            assert wait_for(channel, SERVING)
+    assert not probe.serving(f"127.0.0.1:{port}"), "both have stopped"
+
+
+def test_a_call_is_one_line_of_the_log(caplog: pytest.LogCaptureFixture) -> None:
+    refused = {"code": "unknown_task", "message": "m", "details": {}, "request_id": "7"}
+    answers = httpx.MockTransport(lambda _: httpx.Response(422, json={"error": refused}))
+    with caplog.at_level(logging.INFO, "sparge.access"), grpc_server(answers) as channel:
+        failure(channel, "Grasp", pb.GraspRequest(), metadata=(("authorization", "secret"),))
+    (line,) = [each for each in caplog.records if each.name == "sparge.access"]
+    assert line.getMessage().startswith("grpc Grasp INVALID_ARGUMENT in ")
+    assert (vars(line)["status"], vars(line)["code"]) == ("INVALID_ARGUMENT", "unknown_task")
+    assert "secret" not in str(vars(line))
 
 
 def test_an_address_that_is_taken() -> None:

@@ -11,7 +11,6 @@ from typing import Any
 
 import anyio
 import httpx
-import pytest
 from mcp import Client as Agent
 from mcp import StdioServerParameters
 from mcp.client.stdio import stdio_client
@@ -22,6 +21,7 @@ from services.mcp.backend import Backend
 from services.mcp.files import Root
 from shared.client import Sparge
 from tests.support.processes import CHECKOUT
+from tests.support.relay import relay
 from tests.support.samples import sample_path
 from tests.support.serving import Client, serving
 
@@ -35,27 +35,24 @@ async def grasped(agent: Agent, file: str) -> dict[str, Any]:
     return result.structured_content
 
 
-@pytest.mark.slow
-def test_over_the_standard_streams_with_a_backend_of_its_own(tmp_path: Path) -> None:
+def test_over_the_standard_streams(backend: Client, tmp_path: Path) -> None:
     (tmp_path / "bottle.npz").write_bytes(sample_path("bottle").read_bytes())
-    started = StdioServerParameters(
-        command=sys.executable,
-        args=["-c", "from services.cli import main; main()", "mcp", "--root", str(tmp_path)],
-        env={
-            **os.environ,
-            "PYTHONPATH": str(CHECKOUT),
-            "SPARGE_REASONING_KNOWLEDGE_DIR": str(tmp_path / "knowledge"),
-        },
-        cwd=tmp_path,
-    )
 
-    async def story() -> None:
+    async def story(url: str) -> None:
+        words = ["mcp", "--root", str(tmp_path), "--url", url]
+        started = StdioServerParameters(
+            command=sys.executable,
+            args=["-c", "from services.cli import main; main()", *words],
+            env={**os.environ, "PYTHONPATH": str(CHECKOUT)},
+            cwd=tmp_path,
+        )
         async with Agent(stdio_client(started)) as agent:
             found = await grasped(agent, "bottle.npz")
             assert found["found"]
             assert len(found["grasps"]) == 1
 
-    anyio.run(story)
+    with serving(relay(backend)) as url:
+        anyio.run(story, url)
 
 
 def test_over_http_on_the_loopback(backend: Client, tmp_path: Path) -> None:
