@@ -1,6 +1,6 @@
 # Two commands matter: `make run` and `make test`. `make help` lists the rest.
 .DEFAULT_GOAL := help
-.PHONY: help setup dev run serve test load soak compose-load compose-test check fuzz bench experiments catalogue train-grasps docs docs-serve pictures proto lock clean
+.PHONY: help setup dev run view serve test load soak compose-load compose-test check fuzz bench experiments catalogue train-grasps docs docs-serve pictures proto lock clean
 
 SAMPLE ?= experiments/samples/bottle.npz
 TASK ?= pouring
@@ -17,6 +17,9 @@ dev:  ## The same with what tests, style and documentation need
 
 run: setup  ## The main job on a bundled view: region, grasps, explanation, timings, a picture
 	@.venv/bin/sparge grasp $(SAMPLE) --task $(TASK) --picture $(PICTURE)
+
+view: setup  ## The page in the browser on http://127.0.0.1:8080: look, ask, teach, try
+	@.venv/bin/sparge view $(VIEWS)
 
 serve: setup  ## The embedded backend on http://127.0.0.1:8000
 	@.venv/bin/sparge serve

@@ -5,6 +5,7 @@ from __future__ import annotations
 PART_COLOURS = ("#0072B2", "#E69F00", "#009E73", "#CC79A7", "#56B4E9", "#8C6D31", "#6A51A3")
 """In turn; apart for all kinds of colour vision (after Okabe and Ito)."""
 NO_PART, REST, REGION = "#9A9A9A", "#C4C4C4", "#D55E00"
+TABLE = "#D8D2C6"
 
 Rgb = tuple[int, int, int]
 

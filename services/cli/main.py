@@ -22,6 +22,7 @@ from services.cli.mcp import mcp
 from services.cli.options import Input, LogLevel, Reasoning, json_option
 from services.cli.rule import rule_commands
 from services.cli.task import task_commands
+from services.cli.view import view
 from shared.errors import SpargeError
 
 app = typer.Typer(
@@ -35,6 +36,7 @@ app.command()(annotate)
 app.command()(dataset)
 app.command()(experiment)
 app.command()(doctor)
+app.command()(view)
 app.command()(grpc)
 app.command()(mcp)
 app.add_typer(task_commands, name="task")

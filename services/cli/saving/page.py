@@ -12,7 +12,7 @@ from pathlib import Path
 import viser
 
 from services.cli.ask import Answered
-from services.viewer.drawing import draw_answer, eye_of
+from services.viewer.drawing import draw_answer
 from services.viewer.drawing.answer import describe
 from shared.client import headline
 
@@ -40,8 +40,14 @@ def write_page(path: Path, answered: Answered) -> None:
 
 
 def _draw(server: viser.ViserServer, answered: Answered) -> None:
-    result, (on_object, _, _) = answered.result, answered.object_cloud()
-    shown = draw_answer(server.scene, result, answered.points, answered.gripper)
+    result = answered.result
+    shown = draw_answer(
+        server.scene,
+        result,
+        answered.points,
+        answered.gripper,
+        viewpoint=answered.viewpoint,
+    )
     for hand in shown.grasps[:1]:
         hand.opacity = BEST_OPACITY
     if result.best is not None:
@@ -53,10 +59,9 @@ def _draw(server: viser.ViserServer, answered: Answered) -> None:
             anchor="bottom-center",
             font_screen_scale=0.85,
         )
-    seen = on_object if len(on_object) else answered.points
-    eye = eye_of(seen, result.answer.scene.up, answered.viewpoint)
-    camera = server.initial_camera
-    camera.up, camera.look_at, camera.position = eye.up, eye.look_at, eye.position
+    stage, camera = shown.stage, server.initial_camera
+    camera.up, camera.fov = (0.0, 0.0, 1.0), stage.field_of_view
+    camera.look_at, camera.position = stage.look_at, stage.eye
 
 
 def with_words(page: str, answered: Answered) -> str:

@@ -7,13 +7,14 @@ from dataclasses import dataclass, field
 
 import numpy as np
 import viser
-from numpy.typing import NDArray
+from numpy.typing import ArrayLike, NDArray
 
+from services.viewer.drawing.camera import Stage
 from services.viewer.drawing.gripper import gripper_mesh
 from shared.client import GraspResult
 from shared.geometry.points import bounds
-from shared.geometry.rotation import unit
-from shared.palette import NO_PART, REGION, REST, Rgb, part_colour, rgb
+from shared.geometry.se3 import pose_from_matrix
+from shared.palette import NO_PART, REGION, TABLE, Rgb, part_colour, rgb
 from shared.schemas.gripper import Gripper
 from shared.schemas.primitive import Primitive
 from shared.superquadric import surface_mesh
@@ -22,7 +23,7 @@ Array = NDArray[np.float64]
 Wxyz = tuple[float, float, float, float]
 
 MAX_BACKGROUND = 12_000
-NEAR = 2.0
+NEAR = 1.7
 """How much around the object is shown of what is not the object, in radii of it."""
 RINGS, SEGMENTS = 24, 48
 POINT_M, GLOW_M = 0.0022, 0.0042
@@ -36,6 +37,8 @@ class Shown:
 
     Attributes
     ----------
+    stage : Stage
+        The world that it stands in, and from where to look.
     cloud, glow, background : handle or None
         The object's points by part, those of the region, and what else the sensor saw.
     parts, labels : dict
@@ -44,6 +47,7 @@ class Shown:
         Best first.
     """
 
+    stage: Stage
     cloud: viser.PointCloudHandle | None = None
     glow: viser.PointCloudHandle | None = None
     background: viser.PointCloudHandle | None = None
@@ -58,10 +62,11 @@ def draw_answer(
     points: Array,
     gripper: Gripper | None,
     *,
+    viewpoint: ArrayLike = (0.0, 0.0, 0.0),
     best: int = 0,
     max_grasps: int = 5,
 ) -> Shown:
-    """Draw an answer under `/answer` of a scene, in the frame of the view.
+    """Draw an answer under `/answer` of a scene, whose frame is that of the view.
 
     Parameters
     ----------
@@ -72,14 +77,19 @@ def draw_answer(
         The points that the answer speaks about, metres; a depth image's row-major.
     gripper : Gripper or None
         Drawn at every grasp; None draws none.
+    viewpoint : (3,) array_like
+        Position of the sensor in the view's frame.
     best : int
         Rank of the grasp that is drawn in full; the others are faint.
     max_grasps : int
         No more grasps than this.
     """
     scene.remove_by_name("/answer")
-    scene.set_up_direction(tuple(unit(np.asarray(result.answer.scene.up, dtype=float))))
-    shown = Shown()
+    scene.set_up_direction("+z")
+    stage = Stage.of(points[result.point_primitive >= 0], result.answer.scene.up, viewpoint)
+    position, quaternion = pose_from_matrix(stage.world_from_view)
+    scene.add_frame("/answer", show_axes=False, position=position, wxyz=wxyz(quaternion))
+    shown = Shown(stage)
     _draw_points(scene, shown, result, points)
     _draw_parts(scene, shown, result)
     if gripper is not None:
@@ -108,7 +118,7 @@ def draw_grasp(
         vertices,
         faces,
         color=score_colour(row[8]),
-        opacity=0.95 if in_full else 0.16,
+        opacity=0.65 if in_full else 0.12,
         flat_shading=True,
         side="double",
         cast_shadow=in_full,
@@ -144,12 +154,12 @@ def _draw_points(scene: viser.SceneApi, shown: Shown, result: GraspResult, point
     on_object = seen & (part >= 0)
     rest = np.flatnonzero(seen & ~on_object)
     if on_object.any():  # what is near says where the object stands; more would hide it
-        low, high = bounds(points[on_object])
-        middle, radius = (low + high) / 2, float(np.linalg.norm(high - low)) / 2
+        low, extents = bounds(points[on_object])
+        middle, radius = low + extents / 2, float(np.linalg.norm(extents)) / 2
         rest = rest[np.linalg.norm(points[rest] - middle, axis=1) < NEAR * radius]
     rest = rest[:: 1 + len(rest) // MAX_BACKGROUND]
     colour_of = {each.id: rgb(part_colour(k)) for k, each in enumerate(result.answer.primitives)}
-    shown.background = _cloud(scene, "/answer/background", points[rest], rgb(REST), 0.6 * POINT_M)
+    shown.background = _cloud(scene, "/answer/background", points[rest], rgb(TABLE), 0.5 * POINT_M)
     plain = np.flatnonzero(on_object & ~region)
     colours = [colour_of.get(int(each), rgb(NO_PART)) for each in part[plain]]
     shown.cloud = _cloud(scene, "/answer/cloud", points[plain], colours, POINT_M)
@@ -174,7 +184,6 @@ def _cloud(
 def _draw_parts(scene: viser.SceneApi, shown: Shown, result: GraspResult) -> None:
     region = result.answer.region
     held = region.primitive_ids if region else ()
-    up = unit(np.asarray(result.answer.scene.up, dtype=float))
     for number, part in enumerate(result.answer.primitives):
         vertices, faces = surface_mesh(part.superquadric, RINGS, SEGMENTS)
         is_held = part.id in held
@@ -187,11 +196,10 @@ def _draw_parts(scene: viser.SceneApi, shown: Shown, result: GraspResult) -> Non
             side="double",
             cast_shadow=False,
         )
-        top = vertices[np.argmax(vertices @ up)] + 0.006 * up
         shown.labels[part.id] = scene.add_label(
             f"/answer/labels/{part.id}",
             describe(part) + (" · hold" if is_held else ""),
-            position=tuple(top),
-            anchor="bottom-center",
+            position=part.superquadric.position,
+            anchor="center-center",
             font_screen_scale=0.85,
         )

@@ -1,4 +1,8 @@
-"""From where a scene is looked at first."""
+"""The page's world, and from where it is looked at first.
+
+A page turns about the vertical, so its world has z against gravity. The frame of a view has it
+anywhere: a camera's y mostly points down.
+"""
 
 from __future__ import annotations
 
@@ -7,51 +11,75 @@ from dataclasses import dataclass
 import numpy as np
 from numpy.typing import ArrayLike, NDArray
 
+from shared.geometry.points import bounds
 from shared.geometry.rotation import frame_from_z, unit
+from shared.geometry.se3 import inverse, pose_matrix
 
 Array = NDArray[np.float64]
 
-ELEVATION_DEG = 28.0
-AZIMUTH_DEG = 35.0
+ELEVATION_DEG = 30.0
+AZIMUTHS_DEG = (-35.0, 35.0, -65.0, 65.0, -10.0, 10.0)
+"""About the vertical, from the sensor's side; of these the one that shows most of the object."""
+FIELD_OF_VIEW_DEG = 40.0
 DISTANCE = 2.6
-"""Of the eye from the middle, in radii of what is shown."""
+"""Of the eye from the middle, in radii of the object and its gripper."""
+GRIPPER_M = 0.05
+NOWHERE = np.array([[0.0, 0.0, 0.5]])
 
 
 @dataclass(frozen=True)
-class Eye:
-    """A place to look from.
+class Stage:
+    """The world of a page about one object.
 
     Attributes
     ----------
-    position, look_at, up : (3,) arrays
-        In the scene's frame, metres; `up` is a unit vector.
+    world_from_view : (4, 4) array
+        The world's origin is under the middle of the object, z against gravity, x away from the
+        sensor; metres.
+    eye, look_at : (3,) arrays
+        From where to look, and where to, in the world.
+    field_of_view : float
+        Of the picture's height, radians.
     """
 
-    position: Array
+    world_from_view: Array
+    eye: Array
     look_at: Array
-    up: Array
+    field_of_view: float = float(np.deg2rad(FIELD_OF_VIEW_DEG))
+
+    @classmethod
+    def of(cls, points: Array, up: ArrayLike, viewpoint: ArrayLike) -> Stage:
+        """Return the stage of an object.
+
+        Parameters
+        ----------
+        points : (N, 3) array
+            The object's, in the view's frame, metres.
+        up : (3,) array_like
+            Against gravity, in the view's frame.
+        viewpoint : (3,) array_like
+            Position of the sensor, in the view's frame.
+        """
+        held = points[np.isfinite(points).all(axis=1)]
+        held = held if len(held) else NOWHERE
+        z = unit(up) if np.linalg.norm(up) > 0 else np.array([0.0, 0.0, 1.0])
+        low, extents = bounds(held)
+        gaze = low + extents / 2 - np.asarray(viewpoint, dtype=float)
+        axes = frame_from_z(z, x_hint=gaze)
+        low, extents = bounds(held @ axes)
+        middle = low + extents / 2
+        view_from_world = pose_matrix(axes @ [middle[0], middle[1], low[2]], axes)
+        radius = float(np.linalg.norm(extents)) / 2 + GRIPPER_M
+        towards = _towards((held @ axes)[:, :2] - middle[:2])
+        look_at = np.array([0.0, 0.0, (extents[2] + GRIPPER_M) / 2])
+        return cls(inverse(view_from_world), look_at + DISTANCE * radius * towards, look_at)
 
 
-def eye_of(points: Array, up: ArrayLike, viewpoint: ArrayLike) -> Eye:
-    """Return a view on `points` from the sensor's side, a little from above and from the right.
-
-    Parameters
-    ----------
-    points : (N, 3) array
-        Of what matters, metres.
-    up : (3,) array_like
-        Against gravity.
-    viewpoint : (3,) array_like
-        Position of the sensor.
-    """
-    held = points[np.isfinite(points).all(axis=1)]
-    if not len(held):
-        held = np.array([[0.0, 0.0, 0.5]])
-    middle = (held.min(axis=0) + held.max(axis=0)) / 2
-    radius = max(float(np.linalg.norm(held - middle, axis=1).max()), 0.05)
-    z = unit(up) if np.linalg.norm(up) > 0 else np.array([0.0, 0.0, 1.0])
-    away, left, _ = frame_from_z(z, x_hint=middle - np.asarray(viewpoint, dtype=float)).T
-    azimuth, elevation = np.deg2rad([AZIMUTH_DEG, ELEVATION_DEG])
-    level = -np.cos(azimuth) * away - np.sin(azimuth) * left
-    towards = np.cos(elevation) * level + np.sin(elevation) * z
-    return Eye(middle + DISTANCE * (radius + 0.1) * towards, middle, z)
+def _towards(level: Array) -> Array:
+    """Return the direction (3,) to the eye; `level` (N, 2) is the object from above."""
+    azimuths = np.deg2rad(AZIMUTHS_DEG)
+    across = level @ np.array([np.sin(azimuths), -np.cos(azimuths)])
+    best = azimuths[np.argmax(np.ptp(across, axis=0))]
+    elevation = np.deg2rad(ELEVATION_DEG)
+    flat = np.cos(elevation)
+    return np.array([-flat * np.cos(best), -flat * np.sin(best), np.sin(elevation)])

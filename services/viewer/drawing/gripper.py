@@ -13,6 +13,8 @@ Mesh = tuple[Array, Faces]
 """Vertices (V, 3) in metres and triangles (F, 3), counter-clockwise from outside."""
 
 SEGMENTS = 24
+THIN = 0.0025
+"""Metres."""
 
 
 def gripper_mesh(gripper: Gripper, width: float) -> Mesh:
@@ -27,6 +29,19 @@ def gripper_mesh(gripper: Gripper, width: float) -> Mesh:
     if isinstance(gripper, SuctionGripper):
         return _joined(_cup(gripper))
     return _joined(_fingers(gripper, min(width, gripper.max_opening)))
+
+
+def fork_mesh(gripper: Gripper, width: float) -> Mesh:
+    """Return a hint of a gripper: thin fingers on a thin bar, or a thin stem for a cup."""
+    thin = THIN / 2
+    if isinstance(gripper, SuctionGripper):
+        return _joined([_box((-thin, -thin, -gripper.cup_length), (thin, thin, 0.0))])
+    half = min(width, gripper.max_opening) / 2 + thin
+    tip = gripper.tip_beyond_tcp
+    back = tip - gripper.finger_length
+    bars = [_box((-thin, -half, back - THIN), (thin, half, back))]
+    bars += [_box((-thin, y - thin, back), (thin, y + thin, tip)) for y in (-half, half)]
+    return _joined(bars)
 
 
 def _fingers(gripper: ParallelGripper, width: float) -> list[Mesh]:

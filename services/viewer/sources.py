@@ -1,0 +1,124 @@
+"""What can be looked at: bundled views, a file, the files of a folder, what is uploaded."""
+
+from __future__ import annotations
+
+from collections.abc import Callable, Iterator, Mapping
+from dataclasses import dataclass
+from functools import partial
+from pathlib import Path
+from typing import Any
+
+import numpy as np
+from numpy.typing import NDArray
+
+from shared.errors import NotFound
+from shared.geometry.points import points_from_depth
+from shared.schemas.scene import View
+from shared.wire.codec import validate
+from shared.wire.files import EXTENSIONS, extension_of, read_cloud_file
+
+Array = NDArray[np.float64]
+
+
+@dataclass(frozen=True)
+class Seen:
+    """A view, and the points that answers about it speak of.
+
+    Attributes
+    ----------
+    view : View
+        Points, or a depth image.
+    points : (N, 3) array
+        In metres; a depth image's row-major, zero where nothing came back.
+    """
+
+    view: View
+    points: Array
+
+    @classmethod
+    def of(cls, view: View) -> Seen:
+        """Return a view with its points."""
+        if view.points is not None:
+            return cls(view, np.asarray(view.points, dtype=np.float64))
+        assert view.depth is not None
+        assert view.intrinsics is not None
+        scale = view.depth_scale or 1.0
+        return cls(view, points_from_depth(view.depth, view.intrinsics, scale))
+
+    @property
+    def viewpoint(self) -> Array:
+        """Position of the sensor, metres."""
+        return np.asarray(self.view.viewpoint, dtype=np.float64)
+
+    def arrays(self) -> dict[str, Any]:
+        """Return what a request holds of it."""
+        names = ("points", "depth", "intrinsics", "depth_scale")
+        held = {name: getattr(self.view, name) for name in names}
+        return {name: value for name, value in held.items() if value is not None}
+
+
+class Sources(Mapping[str, Callable[[], Seen]]):
+    """Views by name, read when they are asked for.
+
+    Parameters
+    ----------
+    places : iterable of Path
+        Files, and folders whose files are taken; what cannot be read by its suffix is left out.
+    **camera
+        `intrinsics`, `depth_scale` and `viewpoint` for the files that lack them.
+
+    Raises
+    ------
+    NotFound
+        There is nothing in them that can be read.
+    """
+
+    def __init__(self, *places: Path, **camera: Any) -> None:
+        self._viewpoint = camera.pop("viewpoint", None)
+        self._camera = camera
+        self._read: dict[str, Callable[[], Seen]] = {}
+        for place in places:
+            for file in sorted(place.iterdir()) if place.is_dir() else [place]:
+                if file.is_file() and _is_cloud(file, explicit=not place.is_dir()):
+                    self._read[file.name] = partial(self._read_file, file)
+        if not self._read:
+            listed = ", ".join(map(str, places))
+            raise NotFound(
+                f"nothing to look at in {listed}; files end in {', '.join(sorted(EXTENSIONS))}"
+            )
+
+    def read(self, name: str, data: bytes) -> Seen:
+        """Return the view in the bytes of a file.
+
+        Raises
+        ------
+        UnreadableFile, InvalidInput
+            They are no view.
+        """
+        held = read_cloud_file(name, data, **self._camera).fields()
+        if self._viewpoint is not None:
+            held["viewpoint"] = self._viewpoint
+        return Seen.of(validate(View, held))
+
+    def _read_file(self, file: Path) -> Seen:
+        return self.read(file.name, file.read_bytes())
+
+    def upload(self, name: str, data: bytes) -> Seen:
+        """Take a file in for this run, and return its view."""
+        seen = self.read(name, data)
+        self._read[name] = lambda: seen
+        return seen
+
+    def __getitem__(self, name: str) -> Callable[[], Seen]:
+        return self._read[name]
+
+    def __iter__(self) -> Iterator[str]:
+        return iter(self._read)
+
+    def __len__(self) -> int:
+        return len(self._read)
+
+
+def _is_cloud(file: Path, *, explicit: bool) -> bool:
+    """Return whether a file is worth a try; labels beside a view are no view."""
+    return explicit or (extension_of(file.name) in EXTENSIONS and ".labels." not in file.name)
