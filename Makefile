@@ -16,7 +16,7 @@ dev:  ## The same with what tests, style and documentation need
 	@./setup.sh dev
 
 run: setup  ## The main job on a bundled view: region, grasps, explanation, timings, a picture
-	@.venv/bin/sparge grasp $(SAMPLE) --task $(TASK) --picture $(PICTURE)
+	@.venv/bin/sparge grasp $(SAMPLE) --task $(TASK) --save $(PICTURE)
 
 view: setup  ## The page in the browser on http://127.0.0.1:8080: look, ask, teach, try
 	@.venv/bin/sparge view $(VIEWS)

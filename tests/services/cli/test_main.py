@@ -43,7 +43,7 @@ def test_grasp_prints_the_answer_and_draws_it(environment: dict[str, str], tmp_p
     picture = tmp_path / "made" / "grasp.png"
     done = sparge(
         environment,
-        *("grasp", str(sample_path("bottle")), "--task", "Pouring", "--picture", str(picture)),
+        *("grasp", str(sample_path("bottle")), "--task", "Pouring", "--save", str(picture)),
     )
     assert done.returncode == 0, done.stderr
     for word in ("pouring (v2): hold part", "Parts", "Grasps", "Why", "default/version2", "Time"):
