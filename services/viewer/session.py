@@ -189,7 +189,7 @@ class Session:
         for rank, grasp in enumerate(shown.grasps):
             is_chosen = rank == said.rank
             grasp.visible = said.shows_grasps and (is_chosen or said.shows_all_grasps)
-            grasp.opacity = 0.65 if is_chosen else 0.12
+            grasp.opacity = 0.9 if is_chosen else 0.12
 
     def _try_out(self) -> None:
         known, rank = self._known, self.controls.rank
