@@ -3,7 +3,7 @@
 from __future__ import annotations
 
 from collections import deque
-from collections.abc import Iterator
+from collections.abc import Iterator, Sequence
 
 import numpy as np
 from numpy.typing import NDArray
@@ -55,8 +55,8 @@ class ArmTrial:
         Of the fingers before they close, metres.
     strict : bool
         Shake and tilt, too.
-    recorder : Recorder, optional
-        Watches the motion.
+    recorders : sequence of Recorder
+        Watch the motion.
 
     Attributes
     ----------
@@ -74,7 +74,7 @@ class ArmTrial:
         world_from_grasp: Array,
         opening: float,
         strict: bool = False,
-        recorder: Recorder | None = None,
+        recorders: Sequence[Recorder] = (),
     ) -> None:
         self._world = world
         self._arm = arm
@@ -83,7 +83,7 @@ class ArmTrial:
         self._strict = strict
         self.rise = 0.0
         self.lifted = False
-        self._recorder = recorder
+        self._recorders = recorders
         self._steps = round(SETTLE_S / TIME_STEP)
         self.phases: list[Phase] = []
         self._end_phase("settle")
@@ -206,8 +206,8 @@ class ArmTrial:
         return float(left), float(right)
 
     def _step(self, phase: str, goal: Array, velocity: Array, opening: float) -> None:
-        if self._recorder is not None:
-            self._recorder.watch(phase)
+        for recorder in self._recorders:
+            recorder.watch(phase)
         self._arm.drive(goal, velocity)
         self._arm.drive_fingers(opening)
         self._world.step()

@@ -41,8 +41,8 @@ class HandTrial:
     world_from_grasp : (4, 4) array
     strict : bool
         Shake and tilt, too.
-    recorder : Recorder, optional
-        Watches the motion.
+    recorders : sequence of Recorder
+        Watch the motion.
 
     Attributes
     ----------
@@ -59,13 +59,13 @@ class HandTrial:
         hand: FlyingHand | FlyingCup,
         world_from_grasp: Array,
         strict: bool,
-        recorder: Recorder | None = None,
+        recorders: Sequence[Recorder] = (),
     ) -> None:
         self._world = world
         self._hand = hand
         self._world_from_grasp = world_from_grasp
         self._strict = strict
-        self._recorder = recorder
+        self._recorders = recorders
         self.rise = 0.0
         self.lifted = False
         self._steps = round(SETTLE_S / TIME_STEP)
@@ -143,8 +143,8 @@ class HandTrial:
         return outcome.kept(how, self.rise, self._hand.grip_in_words())
 
     def _step(self, phase: str, goal: tuple[list[float], list[float]] | None = None) -> None:
-        if self._recorder is not None:
-            self._recorder.watch(phase)
+        for recorder in self._recorders:
+            recorder.watch(phase)
         if goal is not None:
             self._hand.lead(*goal)
         self._world.step()

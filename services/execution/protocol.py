@@ -15,9 +15,10 @@ from services.execution.flying_cup import FlyingCup
 from services.execution.flying_hand import FlyingHand
 from services.execution.hand import lowest_point
 from services.execution.hand_trial import HandTrial
+from services.execution.motion import motion_fields
 from services.execution.outcome import Verdict, inside_table, too_wide
 from services.execution.placement import PREGRASP_DISTANCE, shifted
-from services.execution.recording import Recorder, Recording
+from services.execution.recording import STEPS_PER_SAMPLE, Recorder, Recording
 from services.execution.scene import Scene, scene_from_request
 from services.execution.waypoints import approach
 from services.execution.world import World
@@ -73,10 +74,11 @@ def _by_arm(request: ExecuteRequest, scene: Scene) -> ExecuteResponse:
         world = World(bullet, body)
         world.settle()
         arm = Arm(bullet)
-        recorder = Recorder(world, arm) if request.animate else None
-        trial = ArmTrial(world, arm, raised, opening, request.strict, recorder)
+        recorders = _Recorders(request, world, arm)
+        trial = ArmTrial(world, arm, raised, opening, request.strict, recorders.all)
         answer = _answer(request, world, trial)
-        recording = recorder.recording() if recorder is not None else None
+        recording = recorders.of_film()
+        answer = _with_motion(answer, request, scene, body, recorders, arm)
     return _filmed(answer, request, scene, body, recording, None)
 
 
@@ -95,10 +97,11 @@ def _by_hand(
         else:
             opening = min(scene.width + OPENING_MARGIN, gripper.max_opening)
             hand = FlyingHand(bullet, gripper, start, opening)
-        recorder = Recorder(world, hand) if request.animate else None
-        trial = HandTrial(world, hand, grasp, request.strict, recorder)
+        recorders = _Recorders(request, world, hand)
+        trial = HandTrial(world, hand, grasp, request.strict, recorders.all)
         answer = _answer(request, world, trial)
-        recording = recorder.recording() if recorder is not None else None
+        recording = recorders.of_film()
+        answer = _with_motion(answer, request, scene, body, recorders, None)
     return _filmed(answer, request, scene, body, recording, gripper)
 
 
@@ -118,6 +121,40 @@ def _answer(request: ExecuteRequest, world: World, trial: ArmTrial | HandTrial) 
         lift_height=round(rise, 4),
         phases=tuple(trial.phases),
     )
+
+
+class _Recorders:
+    """Who watches a trial: for the film, for the numbers, as the request wants."""
+
+    def __init__(
+        self, request: ExecuteRequest, world: World, actor: Arm | FlyingHand | FlyingCup
+    ) -> None:
+        self._film = Recorder(world, actor) if request.animate else None
+        self._motion = Recorder(world, actor, STEPS_PER_SAMPLE) if request.motion else None
+        self.all = tuple(each for each in (self._film, self._motion) if each is not None)
+
+    def of_film(self) -> Recording | None:
+        """Return what the film shows; None where none is wanted or nothing moved."""
+        return self._film.recording() if self._film is not None else None
+
+    def of_motion(self) -> Recording | None:
+        """Return what the answer holds as numbers; None likewise."""
+        return self._motion.recording() if self._motion is not None else None
+
+
+def _with_motion(
+    answer: ExecuteResponse,
+    request: ExecuteRequest,
+    scene: Scene,
+    body: RigidBody,
+    recorders: _Recorders,
+    arm: Arm | None,
+) -> ExecuteResponse:
+    """Return the answer with its motion, where one was recorded."""
+    recording = recorders.of_motion()
+    if recording is None:
+        return answer
+    return answer.model_copy(update=motion_fields(request, scene, body, recording, arm))
 
 
 def _filmed(

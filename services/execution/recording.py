@@ -1,4 +1,4 @@
-"""What a film needs of a simulation: where everything was, a few times a second.
+"""What is kept of a simulation for a film or for the answer: where everything was, when.
 
 A recorder only reads, so that what is simulated is the same with and without it.
 """
@@ -22,6 +22,8 @@ Array = NDArray[np.float64]
 STEPS_PER_FRAME = 24
 """Ten frames per simulated second; GIF counts hundredths, 15 or 24 a second do not fit."""
 FRAME_S = STEPS_PER_FRAME * TIME_STEP
+STEPS_PER_SAMPLE = 10
+"""Of a motion that is given as numbers: 24 per simulated second."""
 WITHOUT_ROBOT = pose_matrix([-0.55, 0.0, 0.0], np.eye(3))
 """Where the film's table and camera are put when there is no robot."""
 
@@ -42,6 +44,8 @@ class Snapshot:
         Centre of mass and principal axes of the object.
     world_from_grasp : (4, 4) array or None
         Of a hand that flies by itself.
+    since_s : float
+        Simulated seconds since the motion began.
     """
 
     phase: str
@@ -49,11 +53,12 @@ class Snapshot:
     opening: float
     world_from_body: Array
     world_from_grasp: Array | None = None
+    since_s: float = 0.0
 
 
 @dataclass(frozen=True)
 class Recording:
-    """A motion, `FRAME_S` simulated seconds from one snapshot to the next.
+    """A motion, the same simulated time from one snapshot to the next; the last may be nearer.
 
     Attributes
     ----------
@@ -67,15 +72,20 @@ class Recording:
 
 
 class Recorder:
-    """Takes a snapshot every `STEPS_PER_FRAME` steps of a motion.
+    """Takes a snapshot every `pace` steps of a motion.
 
     Parameters
     ----------
     world : World
     actor : Arm, FlyingHand or FlyingCup
+    pace : int
+        The film's, unless given.
     """
 
-    def __init__(self, world: World, actor: Arm | FlyingHand | FlyingCup) -> None:
+    def __init__(
+        self, world: World, actor: Arm | FlyingHand | FlyingCup, pace: int = STEPS_PER_FRAME
+    ) -> None:
+        self._pace = pace
         self._world = world
         self._actor = actor
         self._steps = 0
@@ -83,7 +93,7 @@ class Recorder:
 
     def watch(self, phase: str) -> None:
         """See the beginning of a simulated step; call before each one."""
-        if self._steps % STEPS_PER_FRAME == 0:
+        if self._steps % self._pace == 0:
             self._take(phase)
         self._steps += 1
 
@@ -105,6 +115,6 @@ class Recorder:
             joints = actor.joints
         else:
             grasp = actor.world_from_grasp
-        seen = Snapshot(phase, joints, actor.opening, place, grasp)
+        seen = Snapshot(phase, joints, actor.opening, place, grasp, self._steps * TIME_STEP)
         if all(np.isfinite(each).all() for each in (place, joints, grasp) if each is not None):
             self._snapshots.append(seen)

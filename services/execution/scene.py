@@ -40,12 +40,15 @@ class Scene:
         Opening that the grasp needs, metres.
     parts : tuple of ConvexPart
         The object in the world's frame, nothing of it below z = 0.
+    raised : float
+        How far it was raised for that, metres.
     """
 
     world_from_mesh: Array
     world_from_grasp: Array
     width: float
     parts: tuple[ConvexPart, ...]
+    raised: float = 0.0
 
 
 def scene_from_request(request: ExecuteRequest) -> Scene:
@@ -72,7 +75,7 @@ def scene_from_request(request: ExecuteRequest) -> Scene:
         parts = [part.moved(frame_from_mesh) for part in parts]
     frame_from_grasp = matrix_from_pose(request.pose.position, request.pose.quaternion)
     world_from_frame = _world_from_frame(request, frame_from_grasp, parts)
-    solid = _standing([part.moved(world_from_frame) for part in parts])
+    solid, raised = _standing([part.moved(world_from_frame) for part in parts])
     if not solid:
         raise InvalidInput(
             "the object lies below the support plane: does plane.normal point to the objects?",
@@ -83,17 +86,18 @@ def scene_from_request(request: ExecuteRequest) -> Scene:
         world_from_frame @ frame_from_grasp,
         request.width,
         solid,
+        raised,
     )
 
 
-def _standing(parts: list[ConvexPart]) -> tuple[ConvexPart, ...]:
-    """Return the parts above z = 0: raised as a whole when they dip a little, cut otherwise."""
+def _standing(parts: list[ConvexPart]) -> tuple[tuple[ConvexPart, ...], float]:
+    """Return the parts above z = 0, raised as a whole when they dip a little or cut; how far."""
     dip = -min(float(part.vertices[:, 2].min()) for part in parts)
     if 0 < dip <= DIP:
         up = pose_matrix([0.0, 0.0, dip], np.eye(3))
-        return tuple(part.moved(up) for part in parts)
+        return tuple(part.moved(up) for part in parts), dip
     above = (part.above(0.0) for part in parts)
-    return tuple(part for part in above if part is not None)
+    return tuple(part for part in above if part is not None), 0.0
 
 
 def _world_from_frame(

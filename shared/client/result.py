@@ -111,7 +111,13 @@ class GraspResult:
         return self.ranked[0] if self.ranked else None
 
     def execution(
-        self, rank: int = 0, *, strict: bool = False, animate: bool = False, seed: int = 0
+        self,
+        rank: int = 0,
+        *,
+        strict: bool = False,
+        animate: bool = False,
+        motion: bool = False,
+        seed: int = 0,
     ) -> ExecuteRequest:
         """Return the request to try a grasp in simulation, on the parts that were recovered.
 
@@ -119,8 +125,9 @@ class GraspResult:
         ----------
         rank : int
             Which grasp, 0 is the best.
-        strict, animate, seed
-            As in `ExecuteRequest`: shake and tilt after the lift, film it.
+        strict, animate, motion, seed
+            As in `ExecuteRequest`: shake and tilt after the lift, film it, give what moved as
+            arrays.
 
         Raises
         ------
@@ -143,6 +150,7 @@ class GraspResult:
             gripper=self.answer.gripper,
             strict=strict,
             animate=animate,
+            motion=motion,
             seed=seed,
         )
 

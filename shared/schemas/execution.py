@@ -2,6 +2,7 @@
 
 from __future__ import annotations
 
+import operator
 from typing import Annotated, Any, Literal, Self
 
 import numpy as np
@@ -24,6 +25,14 @@ Outcome = Literal[
     "slipped_in_lift",
     "slipped_in_shake",
 ]
+
+
+Series = Annotated[NDArray[np.float64], ArrayField("float64", ("F",))]
+PoseRows = Annotated[NDArray[np.float64], ArrayField("float64", ("F", 7))]
+"""x y z qx qy qz qw"""
+JointRows = Annotated[NDArray[np.float64], ArrayField("float64", ("F", 7))]
+PoseRow = Annotated[NDArray[np.float64], ArrayField("float64", (7,))]
+_WHERE_ASKED = Field(exclude_if=lambda array: array is None)
 
 
 class ExecuteRequest(Message):
@@ -54,6 +63,8 @@ class ExecuteRequest(Message):
     seed: Annotated[int, Field(ge=0, lt=2**32)] = 0
     animate: bool = False
     """Film what happens; changes nothing about it, but takes a few seconds longer."""
+    motion: bool = False
+    """Give what happens as arrays, 24 times per simulated second; changes nothing about it."""
     highlight: Mask | None = None
     """Faces (F,) of the mesh that the film shows in another colour, as the part to hold."""
 
@@ -107,6 +118,23 @@ class ExecuteResponse(Message):
     animation: Annotated[NDArray[np.uint8], ArrayField("uint8", ("B",))] | None = None
     """The bytes of an animated GIF, at most 4 MiB, where one was asked for; None when
     nothing moved because no motion was found or the grasp was refused."""
+    motion_times: Annotated[Series | None, _WHERE_ASKED] = None
+    """Simulated time in seconds of each of F moments, on the clock of `phases`; this and
+    what follows only where `motion` asked for it and something moved."""
+    motion_object: Annotated[PoseRows | None, _WHERE_ASKED] = None
+    """Where the object's frame is, in the frame of the grasp: that of the mesh where the request
+    has `object_pose`, and else one that is the frame of the request while nothing has moved.
+    Points of the object as the request gave them, moved by this pose, are where it is then."""
+    motion_hand: Annotated[PoseRows | None, _WHERE_ASKED] = None
+    """Where the grasp frame of the hand is, the tool centre point between the finger tips."""
+    motion_opening: Annotated[Series | None, _WHERE_ASKED] = None
+    """Between the pads, in metres; 0 for a suction cup."""
+    motion_phases: Annotated[tuple[str, ...], Field(exclude_if=operator.not_)] = ()
+    """What was being done, for each moment; names as in `phases`."""
+    motion_joints: Annotated[JointRows | None, _WHERE_ASKED] = None
+    """Of the arm, in radians from base to hand; None where a hand flew by itself."""
+    motion_base: Annotated[PoseRow | None, _WHERE_ASKED] = None
+    """Where the arm stands, panda_link0: x y z qx qy qz qw."""
 
 
 EXECUTE = Route(

@@ -105,7 +105,15 @@ class GrpcAsHttp:
         return httpx.Response(200, json=plain(answer))
 
 
-ONLY_WHERE_ASKED_FOR = {"sparge.v1.GraspAnswer.rejected"}
+ROW_LENGTHS = {"motion_object": 7, "motion_hand": 7, "motion_joints": 7}
+"""Fields of ExecuteResponse that are rows of so many numbers."""
+ONLY_WHERE_ASKED_FOR = {
+    "sparge.v1.GraspAnswer.rejected",
+    *(
+        f"sparge.v1.ExecuteResponse.motion_{name}"
+        for name in ("times", "object", "hand", "opening", "phases", "joints", "base")
+    ),
+}
 """Fields that HTTP leaves out where they are empty."""
 
 
@@ -118,7 +126,9 @@ def plain(message: Any) -> Json:
         value = getattr(message, each.name)
         if each.full_name in ONLY_WHERE_ASKED_FOR and not value:
             continue
-        if each.is_repeated:
+        if each.name in ROW_LENGTHS:
+            fields[each.name] = np.reshape(value, (-1, ROW_LENGTHS[each.name])).tolist()
+        elif each.is_repeated:
             entries = each.message_type and each.message_type.GetOptions().map_entry
             fields[each.name] = dict(value) if entries else [_plain(each, one) for one in value]
         elif each.has_presence and not message.HasField(each.name):

@@ -638,7 +638,7 @@ class Faces(_message.Message):
     def __init__(self, indices: _Optional[_Iterable[int]] = ...) -> None: ...
 
 class ExecuteRequest(_message.Message):
-    __slots__ = ("pose", "width", "primitives", "vertices", "faces", "object_pose", "plane", "up", "gripper", "actor", "strict", "seed", "animate", "highlight")
+    __slots__ = ("pose", "width", "primitives", "vertices", "faces", "object_pose", "plane", "up", "gripper", "actor", "strict", "seed", "animate", "motion", "highlight")
     POSE_FIELD_NUMBER: _ClassVar[int]
     WIDTH_FIELD_NUMBER: _ClassVar[int]
     PRIMITIVES_FIELD_NUMBER: _ClassVar[int]
@@ -652,6 +652,7 @@ class ExecuteRequest(_message.Message):
     STRICT_FIELD_NUMBER: _ClassVar[int]
     SEED_FIELD_NUMBER: _ClassVar[int]
     ANIMATE_FIELD_NUMBER: _ClassVar[int]
+    MOTION_FIELD_NUMBER: _ClassVar[int]
     HIGHLIGHT_FIELD_NUMBER: _ClassVar[int]
     pose: Pose
     width: float
@@ -666,8 +667,9 @@ class ExecuteRequest(_message.Message):
     strict: bool
     seed: int
     animate: bool
+    motion: bool
     highlight: _containers.RepeatedScalarFieldContainer[bool]
-    def __init__(self, pose: _Optional[_Union[Pose, _Mapping]] = ..., width: _Optional[float] = ..., primitives: _Optional[_Iterable[_Union[Superquadric, _Mapping]]] = ..., vertices: _Optional[_Union[PointCloud, _Mapping]] = ..., faces: _Optional[_Union[Faces, _Mapping]] = ..., object_pose: _Optional[_Union[Pose, _Mapping]] = ..., plane: _Optional[_Union[SupportPlane, _Mapping]] = ..., up: _Optional[_Union[Vector3, _Mapping]] = ..., gripper: _Optional[str] = ..., actor: _Optional[_Union[Actor, str]] = ..., strict: _Optional[bool] = ..., seed: _Optional[int] = ..., animate: _Optional[bool] = ..., highlight: _Optional[_Iterable[bool]] = ...) -> None: ...
+    def __init__(self, pose: _Optional[_Union[Pose, _Mapping]] = ..., width: _Optional[float] = ..., primitives: _Optional[_Iterable[_Union[Superquadric, _Mapping]]] = ..., vertices: _Optional[_Union[PointCloud, _Mapping]] = ..., faces: _Optional[_Union[Faces, _Mapping]] = ..., object_pose: _Optional[_Union[Pose, _Mapping]] = ..., plane: _Optional[_Union[SupportPlane, _Mapping]] = ..., up: _Optional[_Union[Vector3, _Mapping]] = ..., gripper: _Optional[str] = ..., actor: _Optional[_Union[Actor, str]] = ..., strict: _Optional[bool] = ..., seed: _Optional[int] = ..., animate: _Optional[bool] = ..., motion: _Optional[bool] = ..., highlight: _Optional[_Iterable[bool]] = ...) -> None: ...
 
 class Phase(_message.Message):
     __slots__ = ("name", "simulated_s")
@@ -678,7 +680,7 @@ class Phase(_message.Message):
     def __init__(self, name: _Optional[str] = ..., simulated_s: _Optional[float] = ...) -> None: ...
 
 class ExecuteResponse(_message.Message):
-    __slots__ = ("success", "lifted", "outcome", "message", "lift_height", "phases", "animation")
+    __slots__ = ("success", "lifted", "outcome", "message", "lift_height", "phases", "animation", "motion_times", "motion_object", "motion_hand", "motion_opening", "motion_phases", "motion_joints", "motion_base")
     SUCCESS_FIELD_NUMBER: _ClassVar[int]
     LIFTED_FIELD_NUMBER: _ClassVar[int]
     OUTCOME_FIELD_NUMBER: _ClassVar[int]
@@ -686,6 +688,13 @@ class ExecuteResponse(_message.Message):
     LIFT_HEIGHT_FIELD_NUMBER: _ClassVar[int]
     PHASES_FIELD_NUMBER: _ClassVar[int]
     ANIMATION_FIELD_NUMBER: _ClassVar[int]
+    MOTION_TIMES_FIELD_NUMBER: _ClassVar[int]
+    MOTION_OBJECT_FIELD_NUMBER: _ClassVar[int]
+    MOTION_HAND_FIELD_NUMBER: _ClassVar[int]
+    MOTION_OPENING_FIELD_NUMBER: _ClassVar[int]
+    MOTION_PHASES_FIELD_NUMBER: _ClassVar[int]
+    MOTION_JOINTS_FIELD_NUMBER: _ClassVar[int]
+    MOTION_BASE_FIELD_NUMBER: _ClassVar[int]
     success: bool
     lifted: bool
     outcome: Outcome
@@ -693,7 +702,14 @@ class ExecuteResponse(_message.Message):
     lift_height: float
     phases: _containers.RepeatedCompositeFieldContainer[Phase]
     animation: bytes
-    def __init__(self, success: _Optional[bool] = ..., lifted: _Optional[bool] = ..., outcome: _Optional[_Union[Outcome, str]] = ..., message: _Optional[str] = ..., lift_height: _Optional[float] = ..., phases: _Optional[_Iterable[_Union[Phase, _Mapping]]] = ..., animation: _Optional[bytes] = ...) -> None: ...
+    motion_times: _containers.RepeatedScalarFieldContainer[float]
+    motion_object: _containers.RepeatedScalarFieldContainer[float]
+    motion_hand: _containers.RepeatedScalarFieldContainer[float]
+    motion_opening: _containers.RepeatedScalarFieldContainer[float]
+    motion_phases: _containers.RepeatedScalarFieldContainer[str]
+    motion_joints: _containers.RepeatedScalarFieldContainer[float]
+    motion_base: _containers.RepeatedScalarFieldContainer[float]
+    def __init__(self, success: _Optional[bool] = ..., lifted: _Optional[bool] = ..., outcome: _Optional[_Union[Outcome, str]] = ..., message: _Optional[str] = ..., lift_height: _Optional[float] = ..., phases: _Optional[_Iterable[_Union[Phase, _Mapping]]] = ..., animation: _Optional[bytes] = ..., motion_times: _Optional[_Iterable[float]] = ..., motion_object: _Optional[_Iterable[float]] = ..., motion_hand: _Optional[_Iterable[float]] = ..., motion_opening: _Optional[_Iterable[float]] = ..., motion_phases: _Optional[_Iterable[str]] = ..., motion_joints: _Optional[_Iterable[float]] = ..., motion_base: _Optional[_Iterable[float]] = ...) -> None: ...
 
 class Error(_message.Message):
     __slots__ = ("code", "message", "details", "request_id")

@@ -198,8 +198,14 @@ def test_an_earlier_answer_can_be_explained(sparge: Any) -> None:
 
 def test_a_grasp_is_tried_in_simulation(embedded: Sparge) -> None:
     result = embedded.grasp(sample_view("bottle"), TASK, max_grasps=1)
-    tried = embedded.execute(result.execution())
+    tried = embedded.execute(result.execution(motion=True))
     assert (tried.outcome, tried.animation) == ("lifted", None)
+    assert tried.motion_hand is not None
+    assert tried.motion_joints is not None
+    assert tried.motion_hand.shape == tried.motion_joints.shape == (len(tried.motion_phases), 7)
+    heights = tried.motion_hand[:, :3] @ result.answer.scene.up
+    lifting = heights[[name == "lift" for name in tried.motion_phases]]
+    assert np.ptp(lifting) == pytest.approx(0.3, abs=0.02)
 
 
 @pytest.mark.parametrize("kind", ["sync", "async"])

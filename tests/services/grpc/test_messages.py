@@ -152,8 +152,10 @@ def fill(annotation: Any, rng: np.random.Generator, sparse: bool, name: str = ""
         )
     if origin is typing.Annotated:
         marks = annotation.__metadata__
-        if any(isinstance(mark, ArrayField) for mark in marks):
-            return rng.integers(0, 256, size=7, dtype=np.uint8)
+        for mark in marks:
+            if isinstance(mark, ArrayField):
+                shape = [3 if isinstance(length, str) else length for length in mark.shape]
+                return rng.integers(0, 256, size=shape).astype(mark.dtype)
         exact = [mark.min_length for mark in marks if isinstance(mark, Len)]
         if exact:
             return tuple(float(rng.normal()) for _ in range(exact[0]))

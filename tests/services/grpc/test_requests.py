@@ -148,6 +148,7 @@ def test_an_execution_arrives_whole() -> None:
             "strict": True,
             "seed": 3,
             "animate": True,
+            "motion": True,
         }
     )
     asked.vertices.float64 = corners.tobytes()
@@ -172,6 +173,7 @@ def test_an_execution_arrives_whole() -> None:
             "strict": True,
             "seed": 3,
             "animate": True,
+            "motion": True,
             "highlight": [True, False],
         }
     )
