@@ -2,6 +2,7 @@
 
 from __future__ import annotations
 
+import importlib.util
 import threading
 import webbrowser
 from pathlib import Path
@@ -40,6 +41,12 @@ def view(
     ] = False,
 ) -> None:
     """Look at answers in the browser: parts, region, grasps, reasons; teach and try."""
+    console = Console(stderr=True)
+    if importlib.util.find_spec("viser") is None:
+        console.print(
+            "viser not installed; please run: pip install 'sparge\\[view]'", highlight=False
+        )
+        raise typer.Exit(1)
     from services.cli.ask import backend
     from services.viewer.server import serving
     from services.viewer.sources import Sources
@@ -57,7 +64,6 @@ def view(
         depth_scale=depth_scale,
         viewpoint=json_option("viewpoint", viewpoint),
     )
-    console = Console(stderr=True)
     console.print("starting the stages" if url is None else f"asking {url}", highlight=False)
     with backend(url) as sparge, serving(sparge, sources, host, port) as page:
         console.print(f"the page is at {page}; Ctrl+C ends it", highlight=False)

@@ -9,6 +9,8 @@ from functools import partial
 
 log = logging.getLogger("sparge")
 
+SETTLE_S = 0.06
+
 Work = Callable[[Callable[[], bool]], None]
 """Told by what it is given whether it is still the newest; it shows nothing if not."""
 
@@ -16,7 +18,8 @@ Work = Callable[[Callable[[], bool]], None]
 class Newest:
     """Runs the newest work in a thread of its own; what waits when newer comes is dropped.
 
-    A slider that is dragged asks for much more than can be answered.
+    A slider that is dragged asks for much more than can be answered. Work waits for a moment, so
+    that what comes at once is done once.
     """
 
     def __init__(self) -> None:
@@ -47,6 +50,7 @@ class Newest:
             with self._changed:
                 while self._waiting is None and self._is_open:
                     self._changed.wait()
+                self._changed.wait_for(lambda: not self._is_open, SETTLE_S)
                 if not self._is_open or self._waiting is None:
                     return
                 work, self._waiting, number = self._waiting, None, self._number

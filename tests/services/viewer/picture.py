@@ -1,6 +1,6 @@
-"""Photograph the page: `python -m experiments.pictures.viewer`, with what `./setup.sh dev` brings.
+"""Photograph the page for the documentation: `python -m tests.services.viewer.picture`.
 
-Writes docs/images/viewer.png.
+Writes docs/images/viewer.png; needs the Chromium that `./setup.sh dev` brings.
 """
 
 from __future__ import annotations
@@ -11,12 +11,13 @@ from pathlib import Path
 
 from playwright.sync_api import Page, sync_playwright
 
+from services.cli.view import SAMPLES
 from services.viewer.server import serving
 from services.viewer.sources import Sources
 from services.wiring import embedded
 
-PICTURE = Path(__file__).parents[2] / "docs" / "images" / "viewer.png"
-SAMPLES = Path(__file__).parents[1] / "samples"
+PICTURE = Path(__file__).parents[3] / "docs" / "images" / "viewer.png"
+
 SIZE = {"width": 1500, "height": 840}
 ARGUMENTS = [
     *("--no-sandbox", "--disable-background-networking", "--disable-component-update"),
