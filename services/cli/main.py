@@ -4,7 +4,6 @@ from __future__ import annotations
 
 import os
 import sys
-from functools import partial
 from typing import Annotated
 
 import typer
@@ -65,12 +64,16 @@ def serve(
     insecure: Annotated[
         bool, typer.Option("--insecure", help="Answer other machines without API keys")
     ] = False,
+    grpc_port: Annotated[
+        int | None, typer.Option(min=1, max=65535, help="Serve gRPC there as well")
+    ] = None,
 ) -> None:
     """Serve the backend; stages without a URL in the environment run in this process.
 
     On another address than the loopback it starts only with API keys (`sparge key`).
     """
     import uvicorn
+    from fastapi import FastAPI
 
     from services.gateway.access import require_guarded
     from services.gateway.settings import GatewaySettings
@@ -82,8 +85,19 @@ def serve(
     if insecure:
         settings = settings.model_copy(update={"insecure": True})
     require_guarded(host, settings)
+
+    def create() -> FastAPI:
+        app = create_app(settings)
+        if grpc_port is None:
+            return app
+        from services.grpc.app import beside
+        from services.grpc.settings import GrpcSettings
+
+        open_to_all = GrpcSettings().model_copy(update={"insecure": settings.insecure})
+        return beside(app, open_to_all, host, grpc_port)
+
     uvicorn.run(
-        partial(create_app, settings),
+        create,
         factory=True,  # made once uvicorn has set up its logs, so that ours are the same
         host=host,
         port=port,
