@@ -46,8 +46,9 @@ def replay(
     of_hand, opening = outcome.motion_hand, outcome.motion_opening
     if times is None or of_object is None or of_hand is None or opening is None or not len(times):
         return
-    for handle in (*shown.grasps, *shown.labels.values()):
-        handle.visible = False
+    shown.choose(None)
+    for label in shown.labels.values():
+        label.visible = False
     _, faces = gripper_mesh(gripper, 0.0)
     hand: viser.MeshHandle | None = None
     began = time.monotonic()

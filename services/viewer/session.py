@@ -186,10 +186,7 @@ class Session:
             shown.background.visible = said.shows_table
         for part in (*shown.parts.values(), *shown.labels.values()):
             part.visible = said.shows_parts
-        for rank, grasp in enumerate(shown.grasps):
-            is_chosen = rank == said.rank
-            grasp.visible = said.shows_grasps and (is_chosen or said.shows_all_grasps)
-            grasp.opacity = 0.9 if is_chosen else 0.12
+        shown.choose(said.rank if said.shows_grasps else None, with_others=said.shows_all_grasps)
 
     def _try_out(self) -> None:
         known, rank = self._known, self.controls.rank

@@ -49,7 +49,7 @@ def _draw(server: viser.ViserServer, answered: Answered) -> None:
         viewpoint=answered.viewpoint,
     )
     for hand in shown.grasps[:1]:
-        hand.opacity = BEST_OPACITY
+        hand.full.opacity = BEST_OPACITY
     if result.best is not None:
         behind = [[0.0, 0.0, -answered.gripper.palm_size[2]]]
         server.scene.add_label(

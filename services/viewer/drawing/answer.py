@@ -4,13 +4,14 @@ from __future__ import annotations
 
 from collections.abc import Sequence
 from dataclasses import dataclass, field
+from typing import NamedTuple
 
 import numpy as np
 import viser
 from numpy.typing import ArrayLike, NDArray
 
 from services.viewer.drawing.camera import Stage
-from services.viewer.drawing.gripper import gripper_mesh
+from services.viewer.drawing.gripper import fork_mesh, gripper_mesh
 from shared.client import GraspResult
 from shared.geometry.points import bounds
 from shared.geometry.se3 import pose_from_matrix
@@ -29,6 +30,13 @@ RINGS, SEGMENTS = 24, 48
 POINT_M, GLOW_M = 0.0022, 0.0042
 LOW, MIDDLE, HIGH = (0.80, 0.16, 0.16), (0.95, 0.77, 0.06), (0.10, 0.62, 0.30)
 """Colours of a grasp by its score: 0, 0.5, 1."""
+
+
+class Hand(NamedTuple):
+    """A gripper in full, and a hint of it."""
+
+    full: viser.MeshHandle
+    hint: viser.MeshHandle
 
 
 @dataclass
@@ -53,7 +61,13 @@ class Shown:
     background: viser.PointCloudHandle | None = None
     parts: dict[int, viser.MeshHandle] = field(default_factory=dict)
     labels: dict[int, viser.LabelHandle] = field(default_factory=dict)
-    grasps: list[viser.MeshHandle] = field(default_factory=list)
+    grasps: list[Hand] = field(default_factory=list)
+
+    def choose(self, best: int | None, *, with_others: bool = True) -> None:
+        """Show the grasp of this rank in full, and hints of the others; None shows none."""
+        for rank, hand in enumerate(self.grasps):
+            hand.full.visible = rank == best
+            hand.hint.visible = best is not None and rank != best and with_others
 
 
 def draw_answer(
@@ -80,7 +94,7 @@ def draw_answer(
     viewpoint : (3,) array_like
         Position of the sensor in the view's frame.
     best : int
-        Rank of the grasp that is drawn in full; the others are faint.
+        Rank of the grasp that is drawn in full; of the others there is a hint.
     max_grasps : int
         No more grasps than this.
     """
@@ -94,36 +108,37 @@ def draw_answer(
     _draw_parts(scene, shown, result)
     if gripper is not None:
         for rank, row in enumerate(result.grasps[:max_grasps]):
-            shown.grasps.append(
-                draw_grasp(scene, f"/answer/grasps/{rank}", row, gripper, rank == best)
-            )
+            shown.grasps.append(draw_grasp(scene, f"/answer/grasps/{rank}", row, gripper))
+        shown.choose(best)
     return shown
 
 
-def draw_grasp(
-    scene: viser.SceneApi, name: str, row: Array, gripper: Gripper, in_full: bool
-) -> viser.MeshHandle:
-    """Draw one gripper, coloured by its score.
+def draw_grasp(scene: viser.SceneApi, name: str, row: Array, gripper: Gripper) -> Hand:
+    """Draw one gripper in full, and a hint of it; coloured by its score, neither is shown yet.
 
     Parameters
     ----------
     row : (9,) array
         x y z qx qy qz qw width score.
-    in_full : bool
-        Opaque; else a hint of it.
     """
-    vertices, faces = gripper_mesh(gripper, row[7])
-    return scene.add_mesh_simple(
-        name,
-        vertices,
-        faces,
-        color=score_colour(row[8]),
-        opacity=0.9 if in_full else 0.12,
-        flat_shading=True,
-        cast_shadow=in_full,
-        wxyz=wxyz(row[3:7]),
-        position=tuple(row[:3]),
-    )
+    drawn = []
+    for kind, (vertices, faces) in (
+        ("full", gripper_mesh(gripper, row[7])),
+        ("hint", fork_mesh(gripper, row[7])),
+    ):
+        drawn.append(
+            scene.add_mesh_simple(
+                f"{name}/{kind}",
+                vertices,
+                faces,
+                color=score_colour(row[8]),
+                flat_shading=True,
+                wxyz=wxyz(row[3:7]),
+                position=tuple(row[:3]),
+                visible=False,
+            )
+        )
+    return Hand(*drawn)
 
 
 def score_colour(score: float) -> Rgb:
