@@ -14,6 +14,7 @@ from services.viewer.drawing.camera import Stage
 from services.viewer.drawing.gripper import fork_mesh, gripper_mesh
 from shared.client import GraspResult
 from shared.geometry.points import bounds
+from shared.geometry.rotation import matrix_from_quaternion
 from shared.geometry.se3 import pose_from_matrix
 from shared.palette import NO_PART, REGION, TABLE, Rgb, part_colour, rgb
 from shared.schemas.gripper import Gripper
@@ -100,7 +101,9 @@ def draw_answer(
     """
     scene.remove_by_name("/answer")
     scene.set_up_direction("+z")
-    stage = Stage.of(points[result.point_primitive >= 0], result.answer.scene.up, viewpoint)
+    stage = Stage.of(
+        points[result.point_primitive >= 0], result.answer.scene.up, viewpoint, _palm(result)
+    )
     position, quaternion = pose_from_matrix(stage.world_from_view)
     scene.add_frame("/answer", show_axes=False, position=position, wxyz=wxyz(quaternion))
     shown = Shown(stage)
@@ -111,6 +114,13 @@ def draw_answer(
             shown.grasps.append(draw_grasp(scene, f"/answer/grasps/{rank}", row, gripper))
         shown.choose(best)
     return shown
+
+
+def _palm(result: GraspResult) -> Array:
+    """Return the direction from the best grasp to its palm; zero where there is none."""
+    if not len(result.grasps):
+        return np.zeros(3)
+    return -matrix_from_quaternion(result.grasps[0, 3:7])[:, 2]
 
 
 def draw_grasp(scene: viser.SceneApi, name: str, row: Array, gripper: Gripper) -> Hand:

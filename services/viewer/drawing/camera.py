@@ -48,7 +48,9 @@ class Stage:
     field_of_view: float = float(np.deg2rad(FIELD_OF_VIEW_DEG))
 
     @classmethod
-    def of(cls, points: Array, up: ArrayLike, viewpoint: ArrayLike) -> Stage:
+    def of(
+        cls, points: Array, up: ArrayLike, viewpoint: ArrayLike, palm: ArrayLike = (0.0, 0.0, 0.0)
+    ) -> Stage:
         """Return the stage of an object.
 
         Parameters
@@ -59,6 +61,9 @@ class Stage:
             Against gravity, in the view's frame.
         viewpoint : (3,) array_like
             Position of the sensor, in the view's frame.
+        palm : (3,) array_like
+            Direction from what is held to the palm, in the view's frame, which had better not be
+            towards the eye; zero: there is no hand.
         """
         held = points[np.isfinite(points).all(axis=1)]
         held = held if len(held) else NOWHERE
@@ -70,16 +75,23 @@ class Stage:
         middle = low + extents / 2
         view_from_world = pose_matrix(axes @ [middle[0], middle[1], low[2]], axes)
         radius = float(np.linalg.norm(extents)) / 2 + GRIPPER_M
-        towards = _towards((held @ axes)[:, :2] - middle[:2])
+        towards = _towards((held @ axes)[:, :2], np.asarray(palm, dtype=float) @ axes)
         look_at = np.array([0.0, 0.0, (extents[2] + GRIPPER_M) / 2])
         return cls(inverse(view_from_world), look_at + DISTANCE * radius * towards, look_at)
 
 
-def _towards(level: Array) -> Array:
+def _towards(level: Array, palm: Array) -> Array:
     """Return the direction (3,) to the eye; `level` (N, 2) is the object from above."""
-    azimuths = np.deg2rad(AZIMUTHS_DEG)
-    across = level @ np.array([np.sin(azimuths), -np.cos(azimuths)])
-    best = azimuths[np.argmax(np.ptp(across, axis=0))]
-    elevation = np.deg2rad(ELEVATION_DEG)
+    azimuths, elevation = np.deg2rad(AZIMUTHS_DEG), np.deg2rad(ELEVATION_DEG)
     flat = np.cos(elevation)
-    return np.array([-flat * np.cos(best), -flat * np.sin(best), np.sin(elevation)])
+    towards = np.column_stack(
+        [
+            -flat * np.cos(azimuths),
+            -flat * np.sin(azimuths),
+            np.full(len(azimuths), np.sin(elevation)),
+        ]
+    )
+    across = np.ptp(level @ np.array([np.sin(azimuths), -np.cos(azimuths)]), axis=0)
+    hidden = np.maximum(towards @ palm, 0.0)
+    best: Array = towards[np.argmax(across * (1 - hidden))]
+    return best
