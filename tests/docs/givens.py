@@ -69,7 +69,10 @@ def of_client() -> dict[str, Any]:
     }
 
 
-NAMES: Mapping[str, Callable[[], dict[str, Any]]] = {"client.md": of_client}
+NAMES: Mapping[str, Callable[[], dict[str, Any]]] = {
+    "client.md": of_client,
+    "README.md": of_client,
+}
 """By page: what its snippets call by a name without making it."""
 
 FOR: Mapping[str, Callable[[Path], None]] = {
