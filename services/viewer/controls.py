@@ -38,6 +38,7 @@ class Controls:
             self._rejected = gui.add_checkbox(
                 "Rejected hands", initial_value=False, hint="Click one to see why it was left out"
             )
+            self._legend = gui.add_html("")
             self._try = gui.add_button("Try it in simulation", icon=viser.Icon.PLAYER_PLAY)
         with tabs.add_tab("Look"):
             self._cloud = gui.add_checkbox("Points", initial_value=True)
@@ -145,6 +146,10 @@ class Controls:
     def tell(self, words: str) -> None:
         """Tell the answer and why."""
         self._words.content = words
+
+    def list_reasons(self, legend: str) -> None:
+        """Tell the colours of rejected hands, as HTML."""
+        self._legend.content = legend
 
     def offer(
         self, tasks: Sequence[str], grippers: Sequence[str], affordances: Sequence[str]

@@ -36,7 +36,7 @@ def serving(sparge: Sparge, sources: Sources, host: str, port: int) -> Iterator[
 
     @server.on_client_connect
     def _(client: viser.ClientHandle) -> None:
-        sessions[client.client_id] = Session(client, sparge, sources)
+        sessions[client.client_id] = Session(client, sparge, sources.copy())
 
     @server.on_client_disconnect
     def _(client: viser.ClientHandle) -> None:

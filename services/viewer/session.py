@@ -2,6 +2,8 @@
 
 from __future__ import annotations
 
+import logging
+import threading
 from collections.abc import Callable
 from dataclasses import dataclass
 
@@ -10,17 +12,25 @@ import viser
 from services.viewer.controls import Controls
 from services.viewer.disturbance import Disturbance
 from services.viewer.drawing import Shown, Stage, draw_answer
-from services.viewer.drawing.rejected import draw_rejected
+from services.viewer.drawing.rejected import draw_rejected, legend
 from services.viewer.newest import Newest
 from services.viewer.replay import replay
 from services.viewer.sources import Seen, Sources
-from services.viewer.words import answer_in_words, error_in_words, execution_in_words
+from services.viewer.words import (
+    answer_in_words,
+    error_in_words,
+    execution_in_words,
+    rejected_in_words,
+)
 from shared.client import GraspResult, Sparge
 from shared.errors import SpargeError
+from shared.schemas.answer import RejectedGrasp
 from shared.schemas.gripper import Gripper
 
 REJECTED = 60
 """How many hands that were left out are shown."""
+
+log = logging.getLogger("sparge")
 
 StillNewest = Callable[[], bool]
 
@@ -56,11 +66,13 @@ class Session:
     sparge : Sparge
         The backend, asked through its public interface alone.
     sources : Sources
-        What can be looked at.
+        What can be looked at; this page's own, uploads are added.
     """
 
     def __init__(self, client: viser.ClientHandle, sparge: Sparge, sources: Sources) -> None:
         self._client, self._sparge, self._sources = client, sparge, sources
+        self._drawing = threading.RLock()
+        """What is drawn is changed by work and by switches, in different threads."""
         self._newest = Newest()
         self._known: Known | None = None
         self._before: tuple[str, Seen, GraspResult] | None = None
@@ -83,11 +95,8 @@ class Session:
 
     def _start(self) -> None:
         """Learn what the backend knows; the page says what is wrong where it does not answer."""
-        if not self._careful(self._learn):
-            return
-        asked = self._asked()
-        if asked is not None:
-            self._answer(asked, lambda: True)
+        if self._careful(self._learn):
+            self.ask()
 
     def _learn(self) -> None:
         self.controls.say("reaching the backend …")
@@ -111,6 +120,8 @@ class Session:
 
     def _answer(self, asked: Asked, is_newest: StillNewest) -> None:
         def work() -> None:
+            if not is_newest():
+                return
             self.controls.say("asking …")
             seen, result = self._seen_and_answered(asked)
             if is_newest():
@@ -149,7 +160,7 @@ class Session:
             return
         result, gripper = known.result, self._grippers.get(known.asked.gripper)
         self.controls.offer_ranks(len(result.grasps))
-        with self._client.atomic():
+        with self._drawing, self._client.atomic():
             self._shown = draw_answer(
                 self._client.scene,
                 result,
@@ -159,14 +170,16 @@ class Session:
                 best=self.controls.rank,
             )
             if gripper is not None and known.asked.with_rejected:
-                draw_rejected(
-                    self._client.scene, result.answer.rejected, gripper, self.controls.say
-                )
+                draw_rejected(self._client.scene, result.answer.rejected, gripper, self._tell_why)
             self._redraw()
         if moves_eye:
             self._look_at(self._shown.stage)
+        self.controls.list_reasons(legend(result.answer.rejected))
         self.controls.tell(answer_in_words(result.answer))
         self.controls.say(_counted(known))
+
+    def _tell_why(self, hand: RejectedGrasp) -> None:
+        self.controls.say(rejected_in_words(hand))
 
     def _look_at(self, stage: Stage) -> None:
         camera = self._client.camera
@@ -176,9 +189,12 @@ class Session:
 
     def _redraw(self) -> None:
         """Show and hide what the switches say."""
-        said, shown = self.controls, self._shown
-        if shown is None:
-            return
+        with self._drawing:
+            if self._shown is not None:
+                self._switch(self._shown)
+
+    def _switch(self, shown: Shown) -> None:
+        said = self.controls
         for handle in (shown.cloud, shown.glow):
             if handle is not None:
                 handle.visible = said.shows_cloud
@@ -222,8 +238,8 @@ class Session:
 
     def _upload(self, name: str, data: bytes) -> None:
         def work() -> None:
-            self._sources.upload(name, data)
-            self.controls.offer_sources(list(self._sources), name)
+            taken = self._sources.take_in(name, data)
+            self.controls.offer_sources(list(self._sources), taken)
 
         if self._careful(work):
             self.ask()
@@ -247,6 +263,10 @@ class Session:
             work()
         except SpargeError as error:
             self.controls.say(error_in_words(error))
+            return False
+        except Exception:
+            log.exception("the viewer failed at a piece of work")
+            self.controls.say("**internal**: the page failed at this; the log has the details")
             return False
         return True
 

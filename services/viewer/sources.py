@@ -2,7 +2,9 @@
 
 from __future__ import annotations
 
+from collections import Counter
 from collections.abc import Callable, Iterator, Mapping
+from copy import copy
 from dataclasses import dataclass
 from functools import partial
 from pathlib import Path
@@ -11,7 +13,7 @@ from typing import Any
 import numpy as np
 from numpy.typing import NDArray
 
-from shared.errors import NotFound
+from shared.errors import NotFound, UnreadableFile
 from shared.geometry.points import points_from_depth
 from shared.schemas.scene import View
 from shared.wire.codec import validate
@@ -60,6 +62,8 @@ class Seen:
 class Sources(Mapping[str, Callable[[], Seen]]):
     """Views by name, read when they are asked for.
 
+    Files of one name in several places are told apart by their paths.
+
     Parameters
     ----------
     places : iterable of Path
@@ -77,10 +81,11 @@ class Sources(Mapping[str, Callable[[], Seen]]):
         self._viewpoint = camera.pop("viewpoint", None)
         self._camera = camera
         self._read: dict[str, Callable[[], Seen]] = {}
-        for place in places:
-            for file in sorted(place.iterdir()) if place.is_dir() else [place]:
-                if file.is_file() and _is_cloud(file, explicit=not place.is_dir()):
-                    self._read[file.name] = partial(self._read_file, file)
+        files = dict.fromkeys(file for place in places for file in _clouds(place))
+        names = Counter(file.name for file in files)
+        for file in files:
+            name = file.name if names[file.name] == 1 else str(file)
+            self._read[name] = partial(self._read_file, file)
         if not self._read:
             listed = ", ".join(map(str, places))
             raise NotFound(
@@ -101,13 +106,33 @@ class Sources(Mapping[str, Callable[[], Seen]]):
         return Seen.of(validate(View, held))
 
     def _read_file(self, file: Path) -> Seen:
-        return self.read(file.name, file.read_bytes())
+        try:
+            data = file.read_bytes()
+        except OSError as error:
+            raise UnreadableFile(f"{file}: {error.strerror}", found=str(file)) from None
+        return self.read(file.name, data)
 
-    def upload(self, name: str, data: bytes) -> Seen:
-        """Take a file in for this run, and return its view."""
+    def copy(self) -> Sources:
+        """Return the same views, to which others may be added."""
+        other = copy(self)
+        other._read = dict(self._read)
+        return other
+
+    def take_in(self, name: str, data: bytes) -> str:
+        """Add the view in the bytes of a file; return the name that it has here.
+
+        Raises
+        ------
+        UnreadableFile, InvalidInput
+            They are no view.
+        """
         seen = self.read(name, data)
-        self._read[name] = lambda: seen
-        return seen
+        number, free = 1, name
+        while free in self._read:
+            number += 1
+            free = f"{name} ({number})"
+        self._read[free] = lambda: seen
+        return free
 
     def __getitem__(self, name: str) -> Callable[[], Seen]:
         return self._read[name]
@@ -119,6 +144,12 @@ class Sources(Mapping[str, Callable[[], Seen]]):
         return len(self._read)
 
 
-def _is_cloud(file: Path, *, explicit: bool) -> bool:
-    """Return whether a file is worth a try; labels beside a view are no view."""
-    return explicit or (extension_of(file.name) in EXTENSIONS and ".labels." not in file.name)
+def _clouds(place: Path) -> list[Path]:
+    """Return a file, or those of a folder worth a try; labels beside a view are no view."""
+    if not place.is_dir():
+        return [place]
+    return [
+        file
+        for file in sorted(place.iterdir())
+        if file.is_file() and extension_of(file.name) in EXTENSIONS and ".labels." not in file.name
+    ]

@@ -6,7 +6,7 @@ import re
 
 from shared.client.headline import headline
 from shared.errors import SpargeError
-from shared.schemas.answer import GraspAnswer
+from shared.schemas.answer import GraspAnswer, RejectedGrasp
 from shared.schemas.execution import ExecuteResponse
 from shared.schemas.task import Condition, RuleTrace
 
@@ -45,6 +45,11 @@ def execution_in_words(outcome: ExecuteResponse) -> str:
     """Return how a try went."""
     mark = HOLDS if outcome.success else FAILS
     return f"{mark} **{outcome.outcome}**: {_plain(outcome.message)}"
+
+
+def rejected_in_words(hand: RejectedGrasp) -> str:
+    """Return why a hand was left out."""
+    return f"left out, **{_plain(hand.reason.code)}**: {_plain(hand.reason.message)}"
 
 
 def _rule(trace: RuleTrace, kind: str) -> list[str]:

@@ -79,7 +79,7 @@ def draw_answer(
     *,
     viewpoint: ArrayLike = (0.0, 0.0, 0.0),
     best: int = 0,
-    max_grasps: int = 5,
+    max_grasps: int = 100,
 ) -> Shown:
     """Draw an answer under `/answer` of a scene, whose frame is that of the view.
 
