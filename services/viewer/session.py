@@ -129,7 +129,17 @@ class Session:
                 self._known = Known(asked, seen, result)
                 self._show(moves_eye=moved)
 
-        self._careful(work)
+        if not self._careful(work) and is_newest():
+            self._forget()
+
+    def _forget(self) -> None:
+        """Show no answer: the one before is not that to the question on the page."""
+        with self._drawing:
+            self._known = self._shown = None
+            self._client.scene.remove_by_name("/answer")
+        self.controls.offer_ranks(0)
+        self.controls.list_reasons("")
+        self.controls.tell("")
 
     def _seen_and_answered(self, asked: Asked) -> tuple[Seen, GraspResult]:
         plain = asked.disturbance == Disturbance()
