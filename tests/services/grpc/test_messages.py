@@ -49,7 +49,9 @@ PAIRS: list[tuple[type[Message], Any, set[str]]] = [
 """Message of the HTTP interface, of gRPC, and the fields that only one of them has."""
 
 
-@pytest.mark.parametrize(("model", "descriptor", "more"), PAIRS, ids=lambda each: str(each)[:40])
+@pytest.mark.parametrize(
+    ("model", "descriptor", "more"), PAIRS, ids=[model.__name__ for model, _, _ in PAIRS]
+)
 def test_the_messages_have_the_same_fields(
     model: type[Message], descriptor: Any, more: set[str]
 ) -> None:
