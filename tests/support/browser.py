@@ -14,7 +14,8 @@ ARGUMENTS = (
     *("--use-angle=swiftshader", "--enable-unsafe-swiftshader"),
 )
 """No traffic of its own; WebGL on the processor."""
-WAIT_MS = 120_000
+WAIT_MS = 300_000
+"""A processor that draws and tests at once is slow."""
 
 
 @contextlib.contextmanager
