@@ -27,6 +27,7 @@ from shared.errors import (
 from shared.schemas.grasp import SELECT, SelectRequest, SelectResponse
 from shared.schemas.task import DELETE_TASK, Task, TaskName
 from shared.service import StageClient, bind, create_service
+from shared.service.local import LocalClient
 from shared.settings import ServiceSettings
 from tests.support.serving import Client, in_process, over_socket, serving
 
@@ -252,6 +253,8 @@ def test_a_stage_with_no_room_says_when_to_come_again() -> None:
 
 def test_a_body_that_does_not_arrive_is_given_up() -> None:
     with serving(service(body_time_s=0.2)) as url:
+        with httpx.Client(base_url=url) as http:
+            LocalClient(http.request).wait_until_ready(60)
         host, port = url.removeprefix("http://").split(":")
         with socket.create_connection((host, int(port)), timeout=10) as slow:
             slow.sendall(
