@@ -15,8 +15,8 @@ from rich.progress import Progress, SpinnerColumn, TextColumn, TimeElapsedColumn
 
 from shared.client import GraspResult, Sparge, connect
 from shared.client.trying import until_it_moves
+from shared.client.view import points_of
 from shared.errors import SpargeError
-from shared.geometry.points import points_from_depth
 from shared.schemas.execution import ExecuteResponse
 from shared.schemas.gripper import Gripper
 from shared.schemas.scene import View
@@ -163,9 +163,4 @@ def _points(question: Question, data: bytes) -> Array:
         intrinsics=question.parameters.get("intrinsics"),
         depth_scale=question.parameters.get("depth_scale"),
     )
-    view = validate(View, held.fields())
-    if view.points is not None:
-        return view.points
-    assert view.depth is not None
-    assert view.intrinsics is not None
-    return points_from_depth(view.depth, view.intrinsics, view.depth_scale or 1.0)
+    return points_of(validate(View, held.fields()))

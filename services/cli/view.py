@@ -13,9 +13,10 @@ from rich.console import Console
 
 from services.cli.options import json_option
 from shared.errors import InvalidInput
+from shared.loopback import is_loopback
+from shared.settings import PROJECT_ROOT
 
-SAMPLES = Path(__file__).parents[2] / "experiments" / "samples"
-LOOPBACK = ("127.0.0.1", "localhost", "::1")
+SAMPLES = PROJECT_ROOT / "experiments" / "samples"
 
 
 def view(
@@ -51,7 +52,7 @@ def view(
     from services.viewer.server import serving
     from services.viewer.sources import Sources
 
-    if host not in LOOPBACK and not insecure:
+    if not is_loopback(host) and not insecure:
         raise InvalidInput(
             f"the page has no keys: everybody who reaches {host} could use it; "
             "say --insecure if that is meant",

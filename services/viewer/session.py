@@ -225,9 +225,8 @@ class Session:
 
         def play(is_newest: StillNewest) -> None:
             self.controls.say("trying it in simulation …")
-            request = known.result.execution(rank, strict=True).model_copy(
-                update={"actor": "hand", "motion": True}
-            )
+            asked = known.result.execution(rank, strict=True, motion=True)
+            request = asked.model_copy(update={"actor": "hand"})
             outcome = self._sparge.execute(request)
             self.controls.say(execution_in_words(outcome))
             gripper = self._grippers.get(known.asked.gripper)

@@ -13,8 +13,8 @@ from typing import Any
 import numpy as np
 from numpy.typing import NDArray
 
+from shared.client.view import points_of
 from shared.errors import NotFound, UnreadableFile
-from shared.geometry.points import points_from_depth
 from shared.schemas.scene import View
 from shared.wire.codec import validate
 from shared.wire.files import EXTENSIONS, extension_of, read_cloud_file
@@ -40,12 +40,7 @@ class Seen:
     @classmethod
     def of(cls, view: View) -> Seen:
         """Return a view with its points."""
-        if view.points is not None:
-            return cls(view, np.asarray(view.points, dtype=np.float64))
-        assert view.depth is not None
-        assert view.intrinsics is not None
-        scale = view.depth_scale or 1.0
-        return cls(view, points_from_depth(view.depth, view.intrinsics, scale))
+        return cls(view, points_of(view))
 
     @property
     def viewpoint(self) -> Array:

@@ -10,6 +10,8 @@ import numpy as np
 from numpy.typing import ArrayLike, NDArray
 
 from shared.errors import InvalidInput
+from shared.geometry.points import points_from_depth
+from shared.schemas.scene import View
 
 ViewLike = ArrayLike | Mapping[str, ArrayLike] | os.PathLike[str]
 """Points (N, 3) in metres; or a depth image (H, W) with `intrinsics` beside it; or a mapping with
@@ -43,6 +45,18 @@ def arrays_of(
         field="view",
         found=list(array.shape),
     )
+
+
+def points_of(view: View) -> NDArray[np.float64]:
+    """Return the points (N, 3), in metres, that answers about a view speak of.
+
+    Those of a depth image are row-major, zero where nothing came back.
+    """
+    if view.points is not None:
+        return view.points
+    assert view.depth is not None
+    assert view.intrinsics is not None
+    return points_from_depth(view.depth, view.intrinsics, view.depth_scale or 1.0)
 
 
 def _numbers(view: ArrayLike) -> NDArray[Any]:

@@ -5,7 +5,6 @@ from __future__ import annotations
 import base64
 import io
 import re
-import shutil
 from dataclasses import replace
 from pathlib import Path
 from typing import Any
@@ -16,7 +15,6 @@ import pytest
 import zstandard
 from matplotlib.colors import to_rgb
 from PIL import Image
-from playwright.sync_api import sync_playwright
 
 from services.cli.ask import Answered
 from services.cli.saving.page import write_page
@@ -24,15 +22,10 @@ from shared.client import Sparge
 from shared.geometry.points import points_from_depth
 from shared.grippers.library import load_grippers
 from shared.palette import PART_COLOURS, REGION
+from tests.support.browser import chromium
 from tests.support.samples import sample_view
 from tests.support.serving import Client
 
-CHROMIUM = shutil.which("chromium") or "/usr/bin/chromium"
-ARGUMENTS = [
-    *("--no-sandbox", "--no-first-run", "--disable-background-networking", "--disable-sync"),
-    *("--disable-component-update", "--disable-quic", "--disable-gpu", "--use-gl=angle"),
-    *("--use-angle=swiftshader", "--enable-unsafe-swiftshader"),
-]
 LARGEST_BYTES = 2_000_000
 
 
@@ -118,8 +111,7 @@ def test_a_browser_draws_it_offline(found: Answered, tmp_path: Path) -> None:
     write_page(tmp_path / "a.html", found)
     said: list[str] = []
     asked: list[str] = []
-    with sync_playwright() as playwright:
-        browser = playwright.chromium.launch(executable_path=CHROMIUM, args=ARGUMENTS)
+    with chromium() as browser:
         page = browser.new_page(viewport={"width": 480, "height": 240}, offline=True)
         page.set_default_timeout(120_000)
         page.on("console", lambda message: said.append(f"{message.type}: {message.text}"))
@@ -134,7 +126,6 @@ def test_a_browser_draws_it_offline(found: Answered, tmp_path: Path) -> None:
             if min(shares.values()) > 0:
                 break
         words = page.inner_text("#sparge")
-        browser.close()
     assert shares[REGION] > 0.003
     assert shares[PART_COLOURS[1]] > 0.0005
     assert "hold part 0" in words

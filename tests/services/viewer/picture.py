@@ -5,26 +5,21 @@ Writes docs/images/viewer.png; needs the Chromium that `./setup.sh dev` brings.
 
 from __future__ import annotations
 
-import shutil
 import sys
 from pathlib import Path
 
-from playwright.sync_api import Page, sync_playwright
+from playwright.sync_api import Page
 
 from services.cli.view import SAMPLES
 from services.viewer.server import serving
 from services.viewer.sources import Sources
 from services.wiring import embedded
+from tests.support.browser import WAIT_MS, chromium
 
 PICTURE = Path(__file__).parents[3] / "docs" / "images" / "viewer.png"
 
 SIZE = {"width": 1500, "height": 840}
-ARGUMENTS = [
-    *("--no-sandbox", "--disable-background-networking", "--disable-component-update"),
-    *("--use-gl=angle", "--use-angle=swiftshader", "--enable-unsafe-swiftshader"),
-]
 SETTLED_MS = 15_000
-WAIT_MS = 300_000
 
 
 def photograph(page: Page, url: str, view: str, task: str, path: Path) -> None:
@@ -45,17 +40,14 @@ def photograph(page: Page, url: str, view: str, task: str, path: Path) -> None:
 
 def main() -> None:
     """Write the picture."""
-    path = shutil.which("chromium") or "/usr/bin/chromium"
     with (
         embedded() as sparge,
         serving(sparge, Sources(SAMPLES), "127.0.0.1", 8398) as url,
-        sync_playwright() as playwright,
+        chromium() as browser,
     ):
-        browser = playwright.chromium.launch(executable_path=path, args=ARGUMENTS)
         page = browser.new_page(viewport=SIZE)  # type: ignore[arg-type]
-        view, task = sys.argv[1:3] if len(sys.argv) > 2 else ("saucepan.npz", "cooking")
+        view, task = sys.argv[1:3] if len(sys.argv) > 2 else ("ladle.npz", "scooping")
         photograph(page, url, view, task, PICTURE)
-        browser.close()
 
 
 if __name__ == "__main__":
