@@ -1,11 +1,12 @@
 """The composition root: the one place that knows all services.
 
-A stage with a URL is called over the network, one without runs in this
-process behind the same client, over ASGI. Nothing else differs.
+A stage with a URL is called over the network; one without runs in this process, where
+its messages are handed over as they are. Nothing else differs.
 """
 
 from __future__ import annotations
 
+import functools
 import importlib
 from collections.abc import AsyncIterator, Iterator
 from contextlib import AsyncExitStack, asynccontextmanager, contextmanager
@@ -17,6 +18,7 @@ from fastapi import FastAPI
 from services.gateway.app import create_app as create_gateway
 from services.gateway.settings import STAGES, GatewaySettings
 from shared.client import Sparge
+from shared.service import LocalStage
 from shared.service.exchange import IN_PROCESS
 from shared.service.local import READY_TIMEOUT_S, in_process
 
@@ -40,7 +42,7 @@ def create_app(settings: GatewaySettings | None = None) -> FastAPI:
     embedded = {name: create_stage(name) for name in STAGES if settings.stage_url(name) is None}
     gateway = create_gateway(
         settings,
-        {name: to_application(app) for name, app in embedded.items()},
+        {name: functools.partial(LocalStage, name, app) for name, app in embedded.items()},
     )
     for stage in embedded.values():
         gateway.state.metrics.join(stage.state.metrics)

@@ -10,6 +10,7 @@ from typing import Any
 import httpx
 from fastapi import FastAPI, Request
 from fastapi.responses import Response
+from opentelemetry.trace import Tracer
 from starlette.concurrency import run_in_threadpool
 from starlette.middleware.cors import CORSMiddleware
 
@@ -43,7 +44,7 @@ from shared.schemas.rule import (
     LIST_RULES,
 )
 from shared.schemas.task import ADD_TASK, DELETE_TASK, LIST_AFFORDANCES, LIST_TASKS
-from shared.service import StageClient
+from shared.service import Stage, StageClient
 from shared.service.app import Health, create_base
 from shared.service.connections import CONNECT_S, network
 from shared.service.openapi import describe
@@ -71,7 +72,8 @@ _PASSED_ON: tuple[Route[Any, Any], ...] = (
 
 def create_app(
     settings: GatewaySettings | None = None,
-    transports: Mapping[str, httpx.AsyncBaseTransport] | None = None,
+    local: Mapping[str, Callable[[Tracer], Stage]] | None = None,
+    network: Callable[[], httpx.AsyncBaseTransport] = network,
 ) -> FastAPI:
     """Return the gateway.
 
@@ -79,19 +81,22 @@ def create_app(
     ----------
     settings : GatewaySettings, optional
         Read from the environment when not given.
-    transports : mapping, optional
-        How to reach stages that have no URL, by name; the composition root
-        gives in-process ones.
+    local : mapping, optional
+        Stages that have no URL, by name, each made with the tracer of its calls; the
+        composition root gives those of this process.
+    network : callable, optional
+        Makes the transport to a stage that has a URL.
 
     Raises
     ------
     ValueError
-        A stage has neither a URL nor a transport.
+        A stage has neither a URL nor is it local.
     InvalidInput
         The file of API keys cannot be read.
     """
     settings = settings or GatewaySettings()
-    clients = _connect(settings, transports or {})
+    local = local or {}
+    _require_all(settings, local)
     files = FileReader(settings)
     memory = Memory(settings.kept_explanations, settings.keep_explanations_s)
 
@@ -100,8 +105,8 @@ def create_app(
         try:
             yield
         finally:
-            for http in clients.values():
-                await http.aclose()
+            for stage in stages.values():
+                await stage.close()
             await run_in_threadpool(files.close)
 
     async def ready() -> Health:
@@ -129,7 +134,20 @@ def create_app(
         guard=Access(settings),
         error_body=error_body,
     )
-    stages = {name: StageClient(name, http, app.state.tracer) for name, http in clients.items()}
+
+    def reach(name: str) -> Stage:
+        url = settings.stage_url(name)
+        if url is None:
+            return local[name](app.state.tracer)
+        http = httpx.AsyncClient(
+            base_url=url,
+            timeout=httpx.Timeout(None, connect=CONNECT_S),
+            headers=secret_headers(settings.stage_secret),
+            transport=network(),
+        )
+        return StageClient(name, http, app.state.tracer)  # nothing is opened yet
+
+    stages = {name: reach(name) for name in STAGES}
     metrics = GraspMetrics(app.state.metrics.registry)
     pipeline = Pipeline(stages, settings, metrics)
     if settings.cors_origins:
@@ -169,29 +187,16 @@ def create_app(
     return app
 
 
-def _connect(
-    settings: GatewaySettings, transports: Mapping[str, httpx.AsyncBaseTransport]
-) -> dict[str, httpx.AsyncClient]:
-    """Return an HTTP client per stage; none of them opens anything yet."""
-    missing = [n for n in STAGES if settings.stage_url(n) is None and n not in transports]
+def _require_all(settings: GatewaySettings, local: Mapping[str, object]) -> None:
+    """Raise ValueError unless it is known where every stage is."""
+    missing = [n for n in STAGES if settings.stage_url(n) is None and n not in local]
     if missing:
         names = ", ".join(f"SPARGE_GATEWAY_{name.upper()}_URL" for name in missing)
         raise ValueError(f"the gateway does not know where its stages are; set {names}")
-    headers = secret_headers(settings.stage_secret)
-    return {
-        name: httpx.AsyncClient(
-            base_url=url or f"http://{name.replace('_', '-')}",
-            timeout=httpx.Timeout(None, connect=CONNECT_S),
-            headers=headers,
-            transport=network() if url else transports[name],
-        )
-        for name in STAGES
-        for url in [settings.stage_url(name)]
-    }
 
 
 def _forward(
-    stage: StageClient, route: Route[In, Out], settings: GatewaySettings
+    stage: Stage, route: Route[In, Out], settings: GatewaySettings
 ) -> Callable[[In], Awaitable[Out]]:
     deadline_s = settings.execution_deadline_s if route is EXECUTE else settings.deadline_s
 

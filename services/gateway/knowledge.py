@@ -18,7 +18,7 @@ from shared.schemas.knowledge import (
     SparqlQuery,
 )
 from shared.schemas.route import Nothing
-from shared.service import StageClient
+from shared.service import Stage
 from shared.service.serve import respond
 from shared.wire import JSON, NPZ, Message, decode
 from shared.wire.codec import validate
@@ -32,7 +32,7 @@ M = TypeVar("M", bound=Message)
 DOCUMENTED = (EXPORT_KNOWLEDGE, IMPORT_KNOWLEDGE, QUERY_KNOWLEDGE)
 
 
-def serve_knowledge(app: FastAPI, reasoning: StageClient, settings: GatewaySettings) -> None:
+def serve_knowledge(app: FastAPI, reasoning: Stage, settings: GatewaySettings) -> None:
     """Add `/knowledge` and `/sparql` to `app`.
 
     Both take and give the messages of their routes as JSON and npz, too.

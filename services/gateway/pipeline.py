@@ -41,7 +41,7 @@ from shared.schemas.primitive import (
 from shared.schemas.route import Nothing, Request, Response, Route
 from shared.schemas.scene import PERCEIVE, PerceiveRequest, PerceiveResponse
 from shared.schemas.task import DECIDE, DecideRequest, DecideResponse
-from shared.service import StageClient
+from shared.service import Stage
 
 CHECKS = "checks"
 """Whether the task and the gripper are known, among the timings; it runs beside perception."""
@@ -74,7 +74,7 @@ class Outcome:
 class _Run:
     """One request under way: what each stage took."""
 
-    stages: Mapping[str, StageClient]
+    stages: Mapping[str, Stage]
     metrics: GraspMetrics
     deadline_s: float
     timings_ms: dict[str, float] = field(default_factory=lambda: {CHECKS: 0.0})
@@ -98,7 +98,7 @@ class Pipeline:
     """Runs the chain over typed clients, wherever the stages live."""
 
     def __init__(
-        self, stages: Mapping[str, StageClient], settings: GatewaySettings, metrics: GraspMetrics
+        self, stages: Mapping[str, Stage], settings: GatewaySettings, metrics: GraspMetrics
     ) -> None:
         self._stages = stages
         self._settings = settings

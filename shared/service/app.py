@@ -101,6 +101,8 @@ def create_base(
         metrics.observe(exchange)
         log_exchange(name, exchange)
 
+    app.state.observe = observe
+    app.state.ready = ready
     app.add_middleware(RequestContext, settings=settings, observe=observe, guard=guard)
     install_error_handlers(app)
 

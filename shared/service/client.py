@@ -1,8 +1,7 @@
 """The typed client: a `Route` and a message in, a message or an error of the tree out.
 
-It is given an `httpx.AsyncClient` and does not know whether that speaks over a
-socket or calls an application in this process. In-process transports know no
-timeouts, so the deadline is kept here.
+It is given an `httpx.AsyncClient` and does not know what that speaks over. Its
+transport may know no timeouts, so the deadline is kept here.
 """
 
 from __future__ import annotations
@@ -53,6 +52,19 @@ class Answer(Protocol):
     def content(self) -> bytes: ...
 
 
+class Stage(Protocol):
+    """One service, wherever it runs: `StageClient`, or `LocalStage` in the same process."""
+
+    async def call(self, route: Route[In, Out], request: In, timeout_s: float) -> Out:
+        """Return the answer, or raise the error."""
+
+    async def health(self, timeout_s: float) -> Health:
+        """Return whether it can work."""
+
+    async def close(self) -> None:
+        """Let go of what the calls need."""
+
+
 @dataclass(frozen=True)
 class _Taken:
     """An answer that was taken in whole, and is no larger than allowed."""
@@ -71,7 +83,7 @@ class StageClient:
     service : str
         Its name, for messages.
     http : httpx.AsyncClient
-        With the base URL and the transport; closed by whoever made it.
+        With the base URL and the transport; closed by whoever made it, or by `close`.
     tracer : Tracer, optional
         Makes a span of each call; without it, the one of the process if there is one.
     """
@@ -96,11 +108,7 @@ class StageClient:
             No answer within `timeout_s` seconds, or by the deadline of the request that is
             being answered.
         """
-        left_s = min(timeout_s, remaining_s())
-        if left_s <= 0:
-            raise DeadlineExceeded(
-                f"no time was left for the stage {self.service}", stage=self.service
-            )
+        left_s = time_left(self.service, timeout_s)
         try:
             with calling(self._tracer, route, self._http.base_url) as span:
                 asked = compose(route, request)  # within the span: its headers name it
@@ -109,9 +117,7 @@ class StageClient:
                     answer = await self._ask(**asked)
                 answered(span, answer.url, answer.status_code)
         except (TimeoutError, httpx.TimeoutException):
-            raise DeadlineExceeded(
-                f"the stage {self.service} did not answer in time", stage=self.service
-            ) from None
+            raise out_of_time(self.service) from None
         except httpx.RequestError as error:
             raise unavailable(self.service, f"cannot be reached ({type(error).__name__})") from None
         try:
@@ -128,6 +134,10 @@ class StageClient:
         except (TimeoutError, httpx.HTTPError, ValueError, StageUnavailable) as error:
             message = str(error) or type(error).__name__
             return Health(status="failed", service=self.service, details={"error": message})
+
+    async def close(self) -> None:
+        """Close the connections."""
+        await self._http.aclose()
 
     async def _ask(
         self, method: str, url: str, headers: Mapping[str, str] | None = None, **options: Any
@@ -188,10 +198,34 @@ def check(service: str, answer: Answer) -> None:
         error = None
     if error is None or isinstance(error, NoSuchPath | MethodNotAllowed):
         raise unavailable(service, f"answered {answer.status_code}; is its URL right?")
+    raise as_of_stage(service, error)
+
+
+def as_of_stage(service: str, error: SpargeError) -> SpargeError:
+    """Return what a stage's error is to whoever called it; one of the input stays what it is."""
     if error.status >= 500 and not isinstance(error, StageUnavailable | DeadlineExceeded):
-        raise unavailable(service, f"failed: {error.message}")
+        return unavailable(service, f"failed: {error.message}")
     error.details.setdefault("stage", service)
-    raise error
+    return error
+
+
+def time_left(service: str, timeout_s: float) -> float:
+    """Return how many seconds a call may take, by `timeout_s` and the request's own deadline.
+
+    Raises
+    ------
+    DeadlineExceeded
+        None are left.
+    """
+    left_s = min(timeout_s, remaining_s())
+    if left_s <= 0:
+        raise DeadlineExceeded(f"no time was left for the stage {service}", stage=service)
+    return left_s
+
+
+def out_of_time(service: str) -> DeadlineExceeded:
+    """Return the error of a service that takes too long."""
+    return DeadlineExceeded(f"the stage {service} did not answer in time", stage=service)
 
 
 def unavailable(service: str, why: str) -> StageUnavailable:

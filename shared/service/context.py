@@ -25,13 +25,12 @@ from shared.errors import (
     SpargeError,
 )
 from shared.service.envelope import error_response
-from shared.service.exchange import ERROR_CODE, Exchange, exchange
+from shared.service.exchange import ERROR_CODE, NOTHING_SENT, Exchange, exchange
 from shared.service.request_id import REQUEST_ID_HEADER, identified, request_id
 from shared.service.server_timing import SERVER_TIMING, server_timing
 from shared.settings import ServiceSettings
 
 _DRAIN_FACTOR, _DRAIN_SECONDS = 8, 10.0
-_NOTHING_SENT = 499  # as nginx counts a client that closed the request
 
 Observe = Callable[[Exchange], None]
 Guard = Callable[[Scope], None]
@@ -59,7 +58,7 @@ class RequestContext:
         identifier = identified(headers.get(REQUEST_ID_HEADER, ""))
         token = request_id.set(identifier)
         trace.get_current_span().set_attribute("sparge.request_id", identifier)
-        started, status, answering, bytes_out = time.perf_counter(), _NOTHING_SENT, False, 0
+        started, status, answering, bytes_out = time.perf_counter(), NOTHING_SENT, False, 0
         limited = _Limited(receive, headers, self._settings)
 
         async def send_with_id(message: Message) -> None:

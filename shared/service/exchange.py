@@ -17,6 +17,9 @@ POLLED = frozenset(
 )
 """Routes that machines ask every few seconds; they are neither logged at info nor traced."""
 
+NOTHING_SENT = 499
+"""Status of a request that was not answered, as nginx counts a client that is gone."""
+
 IN_PROCESS = ("in-process", 0)
 """The client of a request that did not come over a network: the gateway of this process."""
 
@@ -31,7 +34,7 @@ class Exchange:
         The route is the template, as `/tasks/{name}`, so that names make no new series;
         `unmatched` where there is none.
     status : int
-        499 where nothing was sent: whoever asked was gone, or out of time.
+        `NOTHING_SENT` where whoever asked was gone, or out of time.
     seconds : float
         From the first byte of the request to the last of the answer.
     bytes_in, bytes_out : int

@@ -16,6 +16,7 @@ from starlette.concurrency import run_in_threadpool
 from shared.errors import StageUnavailable
 from shared.schemas.route import Route
 from shared.service.app import Health, create_base
+from shared.service.handover import Handover
 from shared.service.openapi import describe
 from shared.service.secret import SecretGuard
 from shared.service.serve import serve_work
@@ -162,5 +163,12 @@ def create_service(
     admission = app.state.admission
     for binding in handlers:
         serve_work(app, binding.route, binding.handler, settings, admission, warm.require)
+    app.state.handover = Handover(
+        {binding.route: binding.handler for binding in handlers},
+        admission,
+        warm.require,
+        app.state.observe,
+        app.state.tracer,
+    )
     describe(app, [binding.route for binding in handlers])
     return app

@@ -22,6 +22,7 @@ from starlette.concurrency import run_in_threadpool
 from shared import __version__
 from shared.schemas.route import Route
 from shared.service.exchange import POLLED
+from shared.service.request_id import request_id
 
 if TYPE_CHECKING:
     from opentelemetry.sdk.trace.export import BatchSpanProcessor
@@ -78,15 +79,21 @@ def telemetry(provider: trace.TracerProvider | None) -> TelemetryConfig:
 
 @contextmanager
 def calling(
-    tracer: trace.Tracer, route: Route[Any, Any], base_url: httpx.URL
+    tracer: trace.Tracer, route: Route[Any, Any], where: httpx.URL | str
 ) -> Iterator[trace.Span]:
-    """Give the span of a call to `route`; the call's headers are made within (`inject`)."""
+    """Give the span of a call to `route`; the call's headers are made within (`inject`).
+
+    `where` is the service's URL, or its name where it is called without a network.
+    """
     attributes: dict[str, str | int] = {
         "http.request.method": route.method,
         "url.template": route.path,
-        "server.address": base_url.host,
-        "server.port": base_url.port or (443 if base_url.scheme == "https" else 80),
     }
+    if isinstance(where, str):
+        attributes["server.address"] = where
+    else:
+        attributes["server.address"] = where.host
+        attributes["server.port"] = where.port or (443 if where.scheme == "https" else 80)
     with tracer.start_as_current_span(
         f"{route.method} {route.path}",
         kind=trace.SpanKind.CLIENT,
@@ -100,6 +107,20 @@ def calling(
             span.set_attribute("error.type", type(error).__name__)
             span.set_status(trace.StatusCode.ERROR)
             raise
+
+
+@contextmanager
+def answering(tracer: trace.Tracer, route: Route[Any, Any]) -> Iterator[trace.Span]:
+    """Give the span of a message that was handed over, as FastAPI does for a request."""
+    attributes = {
+        "http.request.method": route.method,
+        "http.route": route.path,
+        "sparge.request_id": request_id.get(),
+    }
+    with tracer.start_as_current_span(
+        f"{route.method} {route.path}", kind=trace.SpanKind.SERVER, attributes=attributes
+    ) as span:
+        yield span
 
 
 def answered(span: trace.Span, url: str, status_code: int) -> None:

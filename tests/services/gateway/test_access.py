@@ -24,6 +24,7 @@ from shared.schemas.route import Nothing
 from shared.schemas.task import DELETE_TASK, LIST_TASKS, TaskList, TaskName
 from shared.service import bind, create_service
 from shared.settings import ServiceSettings
+from tests.support.gateways import all_elsewhere
 from tests.support.serving import Client, in_process, over_socket
 
 
@@ -43,7 +44,7 @@ def stage(secret: str | None = None) -> FastAPI:
 def gateway(stage_secret: str | None = None, **settings: Any) -> FastAPI:
     app = stage(stage_secret)
     transport = httpx.ASGITransport(app=app, raise_app_exceptions=False)
-    served = create_app(GatewaySettings.model_validate(settings), dict.fromkeys(STAGES, transport))
+    served = create_app(all_elsewhere(**settings), network=lambda: transport)
     alone = served.router.lifespan_context
 
     @contextlib.asynccontextmanager

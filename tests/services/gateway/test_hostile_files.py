@@ -14,9 +14,9 @@ import numpy as np
 import pytest
 
 from services.gateway.app import create_app
-from services.gateway.settings import STAGES, GatewaySettings
 from shared.errors import EmptyCloud
 from tests.support.asking import failed
+from tests.support.gateways import all_elsewhere
 from tests.support.hostile_files import ALLOWED, Hostile, hostile_files
 from tests.support.serving import serving
 
@@ -41,7 +41,7 @@ class NoPoints(httpx.AsyncBaseTransport):
 
 @pytest.fixture(scope="module")
 def gateway() -> Iterator[httpx.Client]:
-    app = create_app(GatewaySettings(**SETTINGS), {name: NoPoints() for name in STAGES})
+    app = create_app(all_elsewhere(**SETTINGS), network=NoPoints)
     with serving(app) as url, httpx.Client(base_url=url, timeout=60) as client:
         yield client
 

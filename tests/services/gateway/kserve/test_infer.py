@@ -15,6 +15,7 @@ from services.gateway.kserve.tensors import pack, pack_text
 from tests.services.gateway.test_access import bearer, gateway
 from tests.services.gateway.test_grasp import arrays, timeless
 from tests.support.asking import cup
+from tests.support.gateways import all_elsewhere
 from tests.support.samples import sample_view
 from tests.support.serving import Client, in_process
 
@@ -208,10 +209,9 @@ def test_health(backend: Client) -> None:
 
 def test_health_of_a_gateway_without_its_stages() -> None:
     from services.gateway.app import create_app
-    from services.gateway.settings import STAGES
 
     transport = httpx.MockTransport(lambda _: httpx.Response(503))
-    app = create_app(transports=dict.fromkeys(STAGES, transport))
+    app = create_app(all_elsewhere(), network=lambda: transport)
 
     async def ask() -> list[tuple[int, Any]]:
         asgi = httpx.ASGITransport(app=app)
