@@ -42,6 +42,7 @@ def free_hand(
     faces: NDArray[np.int32],
     grasp: NDArray[np.float64],
     gripper: str = GRIPPER,
+    mass: float | None = None,
 ) -> ExecuteRequest:
     """Return the request that a hand alone lifts, shakes and tilts the true object.
 
@@ -55,6 +56,8 @@ def free_hand(
     grasp : (9,) array
         A row of the answer, in the camera's frame.
     gripper : str
+    mass : float, optional
+        Of the object, kg; otherwise it is guessed by its volume.
     """
     x, y, z, qx, qy, qz, qw, width, _ = map(float, grasp)
     up_x, up_y, up_z = map(float, view.view.camera_from_world[:3, 2])
@@ -65,6 +68,7 @@ def free_hand(
         vertices=vertices,
         faces=faces,
         object_pose=Pose(position=tuple(position.tolist()), quaternion=tuple(quaternion.tolist())),
+        mass=mass,
         up=(up_x, up_y, up_z),
         gripper=gripper,
         actor="hand",

@@ -10,6 +10,7 @@ from numpy.typing import NDArray
 
 from experiments.camera import StereoNoise
 from experiments.catalogue import CatalogueObject, variant
+from experiments.catalogue.mass import mass_properties, solid_properties
 from experiments.dataset.drop import Body
 from experiments.dataset.make import make_view
 from experiments.dataset.randomness import generator
@@ -24,6 +25,10 @@ CLEAN = 0.35
 """Share of views without noise."""
 TRIANGLES = 1500
 """Of the mesh that is executed: finer ones are merely slower to cut into convex parts."""
+LIGHT = 400.0
+"""kg/m3: what POST /execute takes things for that it knows nothing about."""
+MASSES = (0.05, 0.6)
+"""Kilograms: the range of POST /execute; a hand of 20 N lifts little more."""
 SIGMA_AT_1M = (0.5e-3, 2.5e-3)
 """Metres: from which the noise of the depth at 1 m is drawn."""
 
@@ -43,6 +48,8 @@ class Scene:
         The object's true mesh, metres, in its own frame.
     faces : (F, 3) int32 array
         Its triangles, at most `TRIANGLES`.
+    mass : float
+        Kilograms.
     sigma_at_1m : float
         Of the sensor's noise, metres; 0: a clean view.
     """
@@ -52,6 +59,7 @@ class Scene:
     shown: ShownView
     vertices: Array
     faces: NDArray[np.int32]
+    mass: float
     sigma_at_1m: float
 
 
@@ -87,8 +95,21 @@ def draw_scene(body: Body, view: int, seed: int) -> Scene:
         shown=ShownView(shown),
         vertices=vertices,
         faces=faces,
+        mass=draw_mass(thing, generator(seed, f"mass of {thing.name}", view)),
         sigma_at_1m=sigma,
     )
+
+
+def draw_mass(thing: CatalogueObject, rng: np.random.Generator) -> float:
+    """Return a mass in kilograms, log-uniform between a light guess and the truth.
+
+    A camera sees no density: a pan of sheet steel weighs ten times its volume of wood, and
+    the scorer has to learn grasps that hold either. Within `MASSES`, as all trials are.
+    """
+    meshes = [mesh for part in thing.parts for mesh in part.meshes]
+    light = solid_properties(meshes, [LIGHT] * len(meshes)).mass
+    low, high = np.clip(sorted([light, mass_properties(thing).mass]), *MASSES)
+    return float(np.exp(rng.uniform(np.log(low), np.log(high))))
 
 
 def simplified(thing: CatalogueObject) -> tuple[Array, NDArray[np.int32]]:

@@ -15,6 +15,7 @@ A trial's file holds what the grasp proposal is asked with, and what came of its
     lifted, held (G,) bool    lifted off the table; kept when shaken and tilted, too
     outcome (G,) str          of POST /execute
     object_class () str, number () int, view () int, sigma_at_1m () float
+    mass () float             kg
 """
 
 from __future__ import annotations
@@ -121,12 +122,13 @@ def try_out(
         "number": np.array(int(scene.thing.name.split("-")[-1])),
         "view": np.array(scene.view),
         "sigma_at_1m": np.array(scene.sigma_at_1m),
+        "mass": np.array(scene.mass),
     }
 
 
 def execution(scene: Scene, grasp: Array, gripper: str) -> ExecuteRequest:
     """Return the request to try a grasp (9,) on the object as it really is, with a free hand."""
-    return free_hand(scene.shown, scene.vertices, scene.faces, grasp, gripper)
+    return free_hand(scene.shown, scene.vertices, scene.faces, grasp, gripper, scene.mass)
 
 
 def _judged(judge: Judge, request: ExecuteRequest) -> ExecuteResponse | None:

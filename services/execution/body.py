@@ -43,11 +43,11 @@ class RigidBody:
     inertia: Array
 
 
-def rigid_body(parts: Sequence[ConvexPart]) -> RigidBody:
+def rigid_body(parts: Sequence[ConvexPart], mass: float | None = None) -> RigidBody:
     """Return the body that convex parts in the world's frame make up.
 
     Volume, centre of mass and inertia are sums over the parts: where parts
-    overlap, the overlap counts twice.
+    overlap, the overlap counts twice. Without a `mass` (kg) it is guessed by the volume.
     """
     volumes, centroids, seconds = map(
         np.array, zip(*(part.moments() for part in parts), strict=True)
@@ -58,7 +58,8 @@ def rigid_body(parts: Sequence[ConvexPart]) -> RigidBody:
     spread, axes = np.linalg.eigh((second + second.T) / 2)
     if np.linalg.det(axes) < 0:
         axes[:, 2] *= -1
-    mass = float(np.clip(DENSITY * volume, *MASS_RANGE))
+    if mass is None:
+        mass = float(np.clip(DENSITY * volume, *MASS_RANGE))
     world_from_body = pose_matrix(centre, axes)
     return RigidBody(
         parts=tuple(part.moved(inverse(world_from_body)) for part in parts),

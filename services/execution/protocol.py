@@ -69,7 +69,7 @@ def _by_arm(request: ExecuteRequest, scene: Scene) -> ExecuteResponse:
     if lowest < -TABLE_TOLERANCE:
         return _refused(inside_table(where, -lowest))
     raised = shifted(grasp, np.array([0.0, 0.0, max(0.0, TABLE_CLEARANCE - lowest)]))
-    body = rigid_body(scene.parts)
+    body = rigid_body(scene.parts, request.mass)
     with physics() as bullet:
         world = World(bullet, body)
         world.settle()
@@ -86,7 +86,7 @@ def _by_hand(
     request: ExecuteRequest, scene: Scene, gripper: ParallelGripper | SuctionGripper
 ) -> ExecuteResponse:
     """Replay a request with the gripper alone."""
-    grasp, body = scene.world_from_grasp, rigid_body(scene.parts)
+    grasp, body = scene.world_from_grasp, rigid_body(scene.parts, request.mass)
     start = approach(grasp).start
     with physics() as bullet:
         world = World(bullet, body)

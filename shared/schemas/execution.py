@@ -51,6 +51,8 @@ class ExecuteRequest(Message):
     object_pose: Pose | None = None
     """Where the mesh's own frame is in the frame of the grasp. Many requests about one mesh
     are answered sooner with it: a mesh is prepared once, as long as its arrays stay the same."""
+    mass: Annotated[FiniteFloat, Field(gt=0, le=100)] | None = None
+    """Of the object, kg; None: a guess by its volume, 400 kg/m3 and between 0.05 and 0.6 kg."""
     plane: SupportPlane | None = None
     up: Direction | None = None
     gripper: str = "panda"
