@@ -7,10 +7,18 @@ from pathlib import Path
 import numpy as np
 import pytest
 
+from experiments.catalogue.mass import mass_properties
 from experiments.dataset.drop import body_of
 from experiments.trials.candidates import spread
 from experiments.trials.collecting import Collector, Job, wait_until_ready
-from experiments.trials.scenes import TRIANGLES, draw_object, draw_scene, simplified
+from experiments.trials.scenes import (
+    MASSES,
+    TRIANGLES,
+    draw_mass,
+    draw_object,
+    draw_scene,
+    simplified,
+)
 from experiments.trials.trials import execution, try_out
 from shared.client import GraspResult, Sparge
 from shared.errors import DeadlineExceeded, NotFound, StageUnavailable
@@ -65,6 +73,15 @@ def test_the_executed_mesh_is_the_object_with_fewer_triangles() -> None:
     assert np.ptp(vertices, axis=0) == pytest.approx(np.ptp(pan.vertices, axis=0), abs=0.003)
 
 
+def test_masses_are_between_a_light_guess_and_the_truth() -> None:
+    pan, spoon = draw_object("pan", 1, 0), draw_object("spoon", 0, 0)
+    drawn = [draw_mass(pan, np.random.default_rng(seed)) for seed in range(8)]
+    truth = min(mass_properties(pan).mass, MASSES[1])
+    assert 0.05 < min(drawn) < 0.7 * truth
+    assert min(drawn) < max(drawn) < truth + 1e-9
+    assert draw_mass(spoon, np.random.default_rng(0)) == pytest.approx(MASSES[0])
+
+
 def test_a_grasp_is_executed_on_the_object_where_it_lies() -> None:
     scene = draw_scene(body_of(draw_object("hammer", 0, 0)), 0, 0)
     row = np.array([*scene.shown.object_points.mean(axis=0), 0, 0, 0, 1, 0.03, 0.5])
@@ -80,6 +97,7 @@ def test_a_grasp_is_executed_on_the_object_where_it_lies() -> None:
     assert (seen.max(axis=0) < lies.max(axis=0) + 0.02).all()
     assert request.strict
     assert request.actor == "hand"
+    assert request.mass == scene.mass
 
 
 def test_views_that_cannot_be_answered_are_left_out_and_not_asked_again(tmp_path: Path) -> None:

@@ -156,6 +156,15 @@ def test_a_heavy_bar_by_its_end_is_lost_when_shaken() -> None:
     assert middle.outcome == "held", middle.message
 
 
+def test_what_is_told_to_be_heavy_is_lost() -> None:
+    bar = box((0.1, 0.02, 0.015), (0, 0, 0.015))
+    asked = request((0.07, 0, 0.022), from_above(), bar, width=0.04, strict=True)
+    assert by_hand(asked, mass=0.06).outcome == "held"
+    assert by_hand(asked, mass=1.5).outcome in ("slipped_in_lift", "slipped_in_shake")
+    with pytest.raises(ValueError, match="greater than 0"):
+        ExecuteRequest.model_validate({**dict(asked), "mass": 0.0})
+
+
 def test_the_hand_is_filmed_and_the_film_changes_nothing() -> None:
     asked = request((0.12, 0, 0.12), from_above(), cylinder())
     answer = by_hand(asked, animate=True)

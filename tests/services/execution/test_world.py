@@ -36,6 +36,13 @@ def test_the_mass_stays_in_its_range() -> None:
     assert body_of(box((0.2, 0.2, 0.2), (0, 0, 0.2))).mass == MASS_RANGE[1]
 
 
+def test_a_mass_that_is_told_is_taken() -> None:
+    parts = [ConvexPart(*box((0.01, 0.02, 0.03), (0, 0, 0.03)))]
+    guessed, told = rigid_body(parts), rigid_body(parts, 2.0)
+    assert told.mass == 2.0
+    assert told.inertia / told.mass == pytest.approx(guessed.inertia / guessed.mass)
+
+
 def test_the_centre_of_mass_is_where_it_should_be(bullet: Bullet) -> None:
     body = body_of(*HAMMER)
     volumes = np.array([8 * 0.012 * 0.012 * 0.10, 8 * 0.05 * 0.02 * 0.02])

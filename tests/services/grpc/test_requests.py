@@ -140,6 +140,7 @@ def test_an_execution_arrives_whole() -> None:
         {
             "pose": {"position": [0, 0, 0.6], "quaternion": [0, 0, 0, 1]},
             "width": 0.05,
+            "mass": 0.3,
             "primitives": [],
             "plane": {"normal": [0, 0, 1], "offset": 0.5, "inliers": 7, "residual_mm": 0.5},
             "up": [0, 0, 1],
@@ -163,6 +164,7 @@ def test_an_execution_arrives_whole() -> None:
         {
             "pose": {"position": [0, 0, 0.6], "quaternion": [0, 0, 0, 1]},
             "width": 0.05,
+            "mass": 0.3,
             "vertices": corners,
             "faces": faces,
             "object_pose": {"position": [0, 0, 0.6], "quaternion": [0, 0, 0, 1]},
