@@ -5,8 +5,9 @@ from __future__ import annotations
 import numpy as np
 from numpy.typing import NDArray
 
+from services.perception.own_frame import about_mean
 from shared.errors import DegenerateCloud
-from shared.geometry.points import principal_axes
+from shared.geometry.points import principal_axes_of_centred
 
 Array = NDArray[np.float64]
 
@@ -39,7 +40,8 @@ def require_volume(points: Array) -> None:
 
 
 def _deviations(points: Array) -> Array:
-    return np.sqrt(principal_axes(points)[0])
+    centred = about_mean(np.ascontiguousarray(points))[1]
+    return np.sqrt(principal_axes_of_centred(centred)[0])
 
 
 def _require(points: Array, deviations: Array) -> None:

@@ -1,4 +1,4 @@
-"""Piecewise linear functions of many values."""
+"""Piecewise linear functions."""
 
 from __future__ import annotations
 
@@ -11,20 +11,22 @@ Array = NDArray[np.float64]
 
 
 @kernel
-def interpolate(at: Array, knots: Array, values: Array) -> Array:
-    """Return `numpy.interp(at, knots, values)`, quickly where neighbours in `at` (N,) are alike."""
-    found = np.empty(len(at))
+def value_at(x: float, knots: Array, values: Array) -> float:
+    """Return `numpy.interp(x, knots, values)`, for a few knots."""
     last = len(knots) - 1
     k = 0
+    while k < last and knots[k + 1] <= x:
+        k += 1
+    if k == last or x <= knots[0]:
+        return float(values[k])
+    slope = (values[k + 1] - values[k]) / (knots[k + 1] - knots[k])
+    return float(values[k] + slope * (x - knots[k]))
+
+
+@kernel
+def interpolate(at: Array, knots: Array, values: Array) -> Array:
+    """Return `value_at` each of `at` (N,)."""
+    found = np.empty(len(at))
     for i in range(len(at)):
-        x = at[i]
-        while k < last and knots[k + 1] <= x:
-            k += 1
-        while k > 0 and knots[k] > x:
-            k -= 1
-        if k == last or x <= knots[0]:
-            found[i] = values[k]
-        else:
-            slope = (values[k + 1] - values[k]) / (knots[k + 1] - knots[k])
-            found[i] = values[k] + slope * (x - knots[k])
+        found[i] = value_at(at[i], knots, values)
     return found

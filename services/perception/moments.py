@@ -8,56 +8,61 @@ from numpy.typing import NDArray
 from shared.jit import kernel
 
 Array = NDArray[np.float64]
+Counts = NDArray[np.int64]
 
 
 @kernel
 def moments_near(
-    points: Array, origin: Array, normal: Array, offset: float, tolerance: float
-) -> tuple[int, Array, Array]:
-    """Return number, mean (3,) and scatter (3, 3) of the points (N, 3) within `tolerance`.
+    points: Array, origin: Array, normals: Array, offsets: Array, tolerance: float
+) -> tuple[Counts, Array, Array]:
+    """Return number, mean and scatter of the points (N, 3) within `tolerance` of each plane.
 
-    About `origin` (3,), as is the plane `normal . (p - origin) + offset`.
+    Shapes (F,), (F, 3) and (F, 3, 3), about `origin` (3,), as are the F planes
+    `normal . (p - origin) + offset`.
     """
-    a, b, c = normal[0], normal[1], normal[2]
-    count = 0
-    sx = sy = sz = 0.0
-    xx = xy = xz = yy = yz = zz = 0.0
-    for i in range(len(points)):
-        x = points[i, 0] - origin[0]
-        y = points[i, 1] - origin[1]
-        z = points[i, 2] - origin[2]
-        if abs(a * x + b * y + c * z + offset) < tolerance:
-            count += 1
-            sx += x
-            sy += y
-            sz += z
-            xx += x * x
-            xy += x * y
-            xz += x * z
-            yy += y * y
-            yz += y * z
-            zz += z * z
-    share = 1.0 / max(count, 1)
-    mean = np.array([sx, sy, sz]) * share
-    scatter = np.array([[xx, xy, xz], [xy, yy, yz], [xz, yz, zz]]) * share
-    return count, mean, scatter - np.outer(mean, mean)
+    counts, means = np.zeros(len(normals), dtype=np.int64), np.empty(normals.shape)
+    scatters = np.empty((len(normals), 3, 3))
+    for f in range(len(normals)):
+        a, b, c, d = normals[f, 0], normals[f, 1], normals[f, 2], offsets[f]
+        sx = sy = sz = 0.0
+        xx = xy = xz = yy = yz = zz = 0.0
+        for i in range(len(points)):
+            x = points[i, 0] - origin[0]
+            y = points[i, 1] - origin[1]
+            z = points[i, 2] - origin[2]
+            if abs(a * x + b * y + c * z + d) < tolerance:
+                counts[f] += 1
+                sx += x
+                sy += y
+                sz += z
+                xx += x * x
+                xy += x * y
+                xz += x * z
+                yy += y * y
+                yz += y * z
+                zz += z * z
+        share = 1.0 / max(counts[f], 1)
+        mean = np.array([sx, sy, sz]) * share
+        scatter = np.array([[xx, xy, xz], [xy, yy, yz], [xz, yz, zz]]) * share
+        means[f], scatters[f] = mean, scatter - np.outer(mean, mean)
+    return counts, means, scatters
 
 
 @kernel
 def biweight_moments(
-    points: Array, origin: Array, normal: Array, offset: float, scale: float
+    points: Array, step: int, origin: Array, normal: Array, offset: float, scale: float
 ) -> tuple[float, Array, Array]:
     """Return the weight in all, mean (3,) and scatter (3, 3) of points (N, 3) about `origin`.
 
-    A point at height h above the plane `normal . (p - origin) + offset` weighs
-    (1 - (h / scale)^2)^2, nothing from `scale` on. The sums run in the order of the
+    Of every `step`-th of them. One at height h above the plane `normal . (p - origin) + offset`
+    weighs (1 - (h / scale)^2)^2, nothing from `scale` on. The sums run in the order of the
     points, whatever the number of threads.
     """
     a, b, c = normal[0], normal[1], normal[2]
     total = 0.0
     sx = sy = sz = 0.0
     xx = xy = xz = yy = yz = zz = 0.0
-    for i in range(len(points)):
+    for i in range(0, len(points), step):
         x = points[i, 0] - origin[0]
         y = points[i, 1] - origin[1]
         z = points[i, 2] - origin[2]

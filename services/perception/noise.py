@@ -8,6 +8,7 @@ import numpy as np
 from numpy.typing import NDArray
 
 from services.perception.interpolation import interpolate
+from services.perception.median import median
 
 Array = NDArray[np.float64]
 
@@ -46,7 +47,8 @@ def measure_noise(heights: Array, ranges: Array, bins: int = 8) -> NoiseProfile:
     """
     bins = min(bins, max(1, len(ranges) // 50))
     borders = np.arange(1, bins) * len(ranges) // bins
-    parts = np.split(np.argpartition(ranges, borders), borders)
-    sigmas = [SIGMA_PER_MEDIAN * np.median(np.abs(heights[part])) for part in parts]
-    middles = [np.median(ranges[part]) for part in parts]
+    order = np.argpartition(ranges, borders)
+    away, ranges = np.abs(heights.take(order)), ranges.take(order)
+    sigmas = [SIGMA_PER_MEDIAN * median(part) for part in np.split(away, borders)]
+    middles = [median(part) for part in np.split(ranges, borders)]
     return NoiseProfile(np.array(middles), np.maximum(np.array(sigmas), _FLOOR_M))

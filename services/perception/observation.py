@@ -31,8 +31,6 @@ class Observation:
         Metres, in the view's frame; all finite.
     rows : (M,) array
         Row of each point in the input.
-    ranges : (M,) array
-        Distance of each point from the sensor.
     viewpoint : (3,) array
         Position of the sensor.
     gaze : (3,) array
@@ -44,7 +42,6 @@ class Observation:
 
     points: Array
     rows: Rows
-    ranges: Array
     viewpoint: Array
     gaze: Array
     total: int
@@ -85,10 +82,10 @@ def observe(view: View, kind: InputKind, min_points: int, max_points: int) -> Ob
             found=list(view.viewpoint),
             allowed=f"metres, up to {MAX_COORDINATE_M:g}",
         )
-    points, rows, viewpoint = _finite_points(view)
+    points, rows, reach, viewpoint = _finite_points(view)
     require_metres(points, kind, field)
-    if len(points) and max(-float(points.min()), float(points.max())) >= MAX_COORDINATE_M:
-        points, kept = points_within(read_only(points), MAX_COORDINATE_M)
+    if reach >= MAX_COORDINATE_M:
+        points, kept, _ = points_within(read_only(points), MAX_COORDINATE_M)
         rows = rows[kept]
     if len(rows) < min_points:
         raise EmptyCloud(
@@ -99,16 +96,16 @@ def observe(view: View, kind: InputKind, min_points: int, max_points: int) -> Ob
             allowed=min_points,
             input_points=count,
         )
-    ranges = distances(points, viewpoint)
     if view.depth is not None:
         gaze = _image_centre(view)
     else:
+        ranges = distances(points, viewpoint)
         gaze = unit(np.einsum("i,ij->j", 1.0 / np.maximum(ranges, 1e-9), points - viewpoint))
-    return Observation(points, rows, ranges, viewpoint, gaze, count)
+    return Observation(points, rows, viewpoint, gaze, count)
 
 
-def _finite_points(view: View) -> tuple[Array, Rows, Array]:
-    """Return the finite points (M, 3), their rows (M,) in the input, and the viewpoint (3,)."""
+def _finite_points(view: View) -> tuple[Array, Rows, float, Array]:
+    """Return the finite points (M, 3), their rows (M,) in the input, the reach, the viewpoint."""
     if view.depth is None or view.intrinsics is None:
         given = read_only(np.empty((0, 3)) if view.points is None else view.points)
         return *points_within(given, np.inf), np.asarray(view.viewpoint, dtype=np.float64)

@@ -10,6 +10,7 @@ from numpy.typing import NDArray
 
 from services.perception.cloud import thin
 from services.perception.observation import Observation
+from services.perception.own_frame import bounds
 from services.perception.settings import PerceptionSettings
 from services.perception.shadow import goes_on_behind, hidden_bridge
 from services.perception.things import Thing, measure_thing
@@ -36,7 +37,7 @@ def join_hidden(
     if len(pieces) < 2:
         return list(things)
     voxel = gap / 3
-    corners = [_corners(view.points[piece.members]) for piece in pieces]
+    corners = [bounds(piece.points) for piece in pieces]
     clouds: dict[int, Array] = {}
     group = list(range(len(pieces)))
     for a, b in combinations(range(len(pieces)), 2):
@@ -47,7 +48,7 @@ def join_hidden(
             continue
         for piece in (a, b):
             if piece not in clouds:
-                clouds[piece] = thin(view.points[pieces[piece].members], voxel)
+                clouds[piece] = thin(pieces[piece].points, voxel)
         pair, seen_from = (clouds[a], clouds[b]), view.viewpoint
         if (apart <= reach and hidden_bridge(*pair, seen_from, reach, voxel)) or any(
             goes_on_behind(bar, body, seen_from, settings.hidden_bar_m, voxel)
@@ -65,10 +66,6 @@ def join_hidden(
     return sorted(joined, key=lambda thing: -len(thing.members))
 
 
-def _corners(points: Array) -> Array:
-    return np.array([points.min(axis=0), points.max(axis=0)])
-
-
-def _apart(a: Array, b: Array) -> float:
-    """Return the distance between two boxes given by their corners (2, 3)."""
+def _apart(a: tuple[Array, Array], b: tuple[Array, Array]) -> float:
+    """Return the distance between two boxes given by their corners."""
     return float(np.linalg.norm(np.maximum(np.maximum(a[0] - b[1], b[0] - a[1]), 0.0)))

@@ -8,6 +8,7 @@ from numpy.typing import NDArray
 from services.perception.cloud import thin
 from services.perception.degenerate import require_area, require_volume
 from services.perception.observation import Observation, observe
+from services.perception.own_frame import bounds
 from services.perception.settings import PerceptionSettings
 from services.perception.support import choose_support
 from services.perception.tabletop import Tabletop
@@ -90,7 +91,7 @@ class Perception:
             )
         support = int(np.count_nonzero(top.on_plane))
         return PerceiveResponse(
-            object_points=view.points[chosen.members],
+            object_points=chosen.points,
             object_indices=view.rows[chosen.members].astype(np.int32),
             obstacle_points=self._obstacles(view, top, chosen, up),
             plane=plane,
@@ -106,15 +107,16 @@ class Perception:
 
     def _obstacles(self, view: Observation, top: Tabletop, chosen: Thing, up: Array) -> Array:
         """Return what else stands within reach of the object's box, thinned."""
-        others = [thing.members for thing in top.things if thing is not chosen]
-        rows = np.concatenate([*others, np.flatnonzero(top.furniture)]).astype(np.intp)
+        things = [thing.members for thing in top.things if thing is not chosen]
+        rows = np.concatenate([*things, np.flatnonzero(top.furniture)]).astype(np.intp)
         rows = np.sort(rows)
         frame = frame_from_z(up)
-        box = view.points[chosen.members] @ frame
+        low, high = bounds(chosen.points @ frame)
         reach = self.settings.obstacle_reach_m
-        placed = view.points[rows] @ frame
-        near = (placed > box.min(axis=0) - reach) & (placed < box.max(axis=0) + reach)
-        return thin(view.points[rows[near.all(axis=1)]], self.settings.obstacle_voxel_m)
+        others = view.points.take(rows, axis=0)
+        placed = np.ascontiguousarray((others @ frame).T)
+        near = (placed > (low - reach)[:, None]) & (placed < (high + reach)[:, None])
+        return thin(others.compress(near.all(axis=0), axis=0), self.settings.obstacle_voxel_m)
 
 
 def _triple(vector: Array) -> tuple[float, float, float]:

@@ -14,10 +14,11 @@ Rows = NDArray[np.intp]
 @kernel
 def points_of_depth(
     depth: Array, intrinsics: Array, scale: float, saturated: float
-) -> tuple[Array, Rows]:
+) -> tuple[Array, Rows, float]:
     """Return the points (M, 3) of the pixels with a return, and their rows (M,), row-major.
 
-    As `shared.geometry.points.points_from_depth` without the pixels that it makes NaN.
+    As `shared.geometry.points.points_from_depth` without the pixels that it makes NaN. The third
+    value is the largest coordinate of the points, whatever its sign.
 
     Parameters
     ----------
@@ -35,31 +36,35 @@ def points_of_depth(
     points = np.empty((height * width, 3))
     rows = np.empty(height * width, dtype=np.intp)
     skew = intrinsics[0, 1] / intrinsics[0, 0]
-    count = 0
+    across = (np.arange(width) - intrinsics[0, 2]) / intrinsics[0, 0]
+    count, reach = 0, 0.0
     for i in range(height):
         y = (i - intrinsics[1, 2]) / intrinsics[1, 1]
+        shift = skew * y
         for j in range(width):
             z = depth[i, j] * scale
             if not (0.0 < z < np.inf) or depth[i, j] == saturated:
                 continue
-            x = (j - intrinsics[0, 2]) / intrinsics[0, 0] - skew * y
+            x = across[j] - shift
             points[count, 0] = x * z
             points[count, 1] = y * z
             points[count, 2] = z
+            reach = max(reach, max(abs(x), abs(y), 1.0) * z)
             rows[count] = i * width + j
             count += 1
-    return points[:count], rows[:count]
+    return points[:count], rows[:count], reach
 
 
 @kernel
-def points_within(points: Array, limit: float) -> tuple[Array, Rows]:
+def points_within(points: Array, limit: float) -> tuple[Array, Rows, float]:
     """Return the points (M, 3) of (N, 3) whose coordinates are less than `limit`, and their rows.
 
-    NaN is not less than anything; an infinite limit leaves out what is not finite.
+    The third value is the largest coordinate of what is left, whatever its sign. NaN is not less
+    than anything; an infinite limit leaves out what is not finite.
     """
     kept = np.empty(points.shape)
     rows = np.empty(len(points), dtype=np.intp)
-    count = 0
+    count, reach = 0, 0.0
     for i in range(len(points)):
         x, y, z = points[i, 0], points[i, 1], points[i, 2]
         if abs(x) < limit and abs(y) < limit and abs(z) < limit:
@@ -67,8 +72,9 @@ def points_within(points: Array, limit: float) -> tuple[Array, Rows]:
             kept[count, 1] = y
             kept[count, 2] = z
             rows[count] = i
+            reach = max(reach, abs(x), abs(y), abs(z))
             count += 1
-    return kept[:count], rows[:count]
+    return kept[:count], rows[:count], reach
 
 
 @kernel

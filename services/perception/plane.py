@@ -8,8 +8,10 @@ import numpy as np
 from numpy.typing import NDArray
 
 from services.perception.cloud import cluster
+from services.perception.median import median
 from services.perception.moments import biweight_moments
 from services.perception.noise import SIGMA_PER_MEDIAN
+from services.perception.own_frame import about_mean
 from services.perception.settings import PerceptionSettings
 from shared.geometry.plane import height_above, plane_basis
 from shared.geometry.points import tail_signs
@@ -85,7 +87,7 @@ def measure_plane(normal: Array, offset: float, mapped: Array, share: float) -> 
         return None
     patches = cluster(mapped, _PATCH_GAP_M, 1)
     sizes = np.bincount(patches)
-    mapped = mapped[(sizes >= 0.1 * sizes.sum())[patches]]
+    mapped = mapped.compress((sizes >= 0.1 * sizes.sum())[patches], axis=0)
     if len(mapped) < 3:
         return None
     basis = plane_basis(normal)
@@ -111,19 +113,19 @@ def refine(plane: Plane, points: Array, settings: PerceptionSettings) -> Plane:
     """
     reach = 2 * settings.plane_tolerance_m
     few = points[:: max(1, len(points) // _FEW)]
-    few = few[np.abs(plane.heights(few)) < reach]
+    few = few.compress(np.abs(plane.heights(few)) < reach, axis=0)
     if len(few) < 3:
         return plane
-    origin = few.mean(axis=0)
+    origin, _ = about_mean(few)
     offset = plane.offset + float(plane.normal @ origin)
     normal = np.ascontiguousarray(plane.normal)
-    many = np.ascontiguousarray(points[:: max(1, len(points) // _MANY)])
-    for cloud in (few, few, few, many):
+    last_step = max(1, len(points) // _MANY)
+    for cloud, step in ((few, 1), (few, 1), (few, 1), (points, last_step)):
         heights = np.abs(height_above(few, normal, offset - float(normal @ origin)))
         near = heights[heights < reach]
-        spread = float(np.median(near)) if len(near) else 0.0
+        spread = median(near) if len(near) else 0.0
         scale = _TUKEY * max(SIGMA_PER_MEDIAN * spread, 2e-4)
-        total, mean, scatter = biweight_moments(cloud, origin, normal, offset, scale)
+        total, mean, scatter = biweight_moments(cloud, step, origin, normal, offset, scale)
         if total < 3.0:
             return plane
         turned = np.linalg.eigh(scatter)[1][:, 0].copy()

@@ -10,13 +10,13 @@ import numpy as np
 from numpy.typing import NDArray
 
 from services.perception.noise import SIGMA_PER_MEDIAN, NoiseProfile
+from services.perception.pixels import distances, heights_above
 from services.perception.plane import SAMPLE, Plane
 from services.perception.relief_map import (
-    far_above,
-    gather_heights,
     grow,
     highest_around,
     points_over,
+    survey,
     window_means,
 )
 from services.perception.settings import PerceptionSettings
@@ -59,13 +59,11 @@ class _Grid:
 def relief(
     plane: Plane,
     points: Array,
-    heights: Array,
     viewpoint: Array,
     noise: NoiseProfile,
-    sigmas: Array,
     settings: PerceptionSettings,
-) -> Mask:
-    """Tell which points stand out of the plane towards the sensor.
+) -> tuple[Mask, Mask]:
+    """Tell which points stand out of the plane towards the sensor, and which lie on it.
 
     Averaged over a small window, a 3 mm thing is clear of 1.5 mm noise although no single
     point of it is. So heights are averaged over 3x3 windows of a grid in the plane; a
@@ -79,37 +77,40 @@ def relief(
     ----------
     plane : Plane
         The surface.
-    points, heights : (N, 3), (N,) arrays
-        Metres; heights over the plane.
+    points : (N, 3) array
+        Metres.
     viewpoint : (3,) array
         Position of the sensor.
     noise : NoiseProfile
         Of single heights, by range.
-    sigmas : (N,) array
-        The profile at the points' ranges.
 
     Returns
     -------
-    (N,) array of bool
+    standing, lying : (N,) arrays of bool
     """
     tall = 4 * settings.seed_height_m
     spacing = float(np.sqrt(plane.area / max(1.0, plane.share * len(points))))
     grid = _Grid.over(plane, spacing, settings.cell_m)
-    doubt = settings.grow_height_m, tall
+    limits = settings.grow_height_m, tall, settings.plane_tolerance_m
     axes = np.ascontiguousarray(plane.basis.T) / grid.cell
     origin = grid.origin / grid.cell
-    cells, sums = gather_heights(points, heights, sigmas, doubt, axes, origin, *grid.shape)
+    level = np.ascontiguousarray(plane.normal), plane.offset
+    cells, sums, standing, lying = survey(
+        points, level, viewpoint, (noise.ranges, noise.sigmas), limits, axes, origin, *grid.shape
+    )
     count, mean = window_means(sums)
     sensor = viewpoint @ plane.basis, float(plane.heights(viewpoint))
     kept = _certain_patches(mean, count, lambda of: noise.at(grid.ranges(of, *sensor)), settings)
     rows = points_over(cells, kept)
-    cells = cells[rows]
+    over, cells = points.take(rows, axis=0), cells.take(rows)
     least = _threshold(
-        highest_around(cells, mean, kept), mean.ravel()[cells], sigmas[rows], settings
+        highest_around(cells, mean, kept),
+        mean.ravel().take(cells),
+        noise.at(distances(over, viewpoint)),
+        settings,
     )
-    standing = far_above(heights, sigmas, tall, 8.0)
-    standing[rows[heights[rows] > least]] = True
-    return standing
+    standing[rows[heights_above(over, *level) > least]] = True
+    return standing, lying & ~standing
 
 
 def _threshold(top: Array, mean: Array, sigma: Array, settings: PerceptionSettings) -> Array:

@@ -9,6 +9,7 @@ from __future__ import annotations
 import numpy as np
 from numpy.typing import NDArray
 
+from services.perception.interpolation import value_at
 from shared.jit import kernel
 
 Array = NDArray[np.float64]
@@ -17,26 +18,34 @@ Mask = NDArray[np.bool_]
 
 
 @kernel
-def gather_heights(
+def survey(
     points: Array,
-    heights: Array,
-    sigmas: Array,
-    relief: tuple[float, float],
+    plane: tuple[Array, float],
+    viewpoint: Array,
+    noise: tuple[Array, Array],
+    limits: tuple[float, float, float],
     axes: Array,
     origin: Array,
     rows: int,
     columns: int,
-) -> tuple[Cells, Array]:
-    """Sum up the heights (N,) of points (N, 3) over each cell.
+) -> tuple[Cells, Array, Mask, Mask]:
+    """Sum up the heights of points (N, 3) above a plane over each cell, and sort them out.
+
+    In one pass, and a height's deviation is only made out where it matters: most points of a
+    view lie so close to its support that no noise is asked for.
 
     Parameters
     ----------
-    sigmas : (N,) array
-        Standard deviations of the heights.
-    relief : tuple of float
-        The least height of relief, and one that leaves no doubt. What lies lower than
-        the first and three deviations below the plane is left out; no height counts for
-        more than the second and eight deviations.
+    plane : tuple
+        Normal (3,) and offset.
+    viewpoint : (3,) array
+        Position of the sensor.
+    noise : tuple of array
+        Ranges (B,) and the standard deviations (B,) of heights there.
+    limits : tuple of float
+        The least height of relief, one that leaves no doubt, and how far the plane reaches.
+        What lies lower than the first and three deviations below the plane is left out of the
+        sums; no height counts for more than the second or eight deviations.
     axes : (2, 3) array
         Directions of the grid's rows and columns, divided by the edge of a cell.
     origin : (2,) array
@@ -48,25 +57,42 @@ def gather_heights(
         `row * columns + column`, 0 for none.
     sums : (rows, columns, 2) array
         Number of points and sum of heights.
+    above : (N,) array of bool
+        What is higher than the second limit and eight deviations.
+    close : (N,) array of bool
+        What is, on either side, within the third limit or four deviations.
     """
+    normal, offset = plane
+    a, b, c = normal[0], normal[1], normal[2]
+    low, tall, near = limits
+    floor = 0.9 * noise[1].min()  # no deviation is as small, by whatever rounding
+    sunk = -3.0 * floor - low
     ua, ub, uc, u0 = axes[0, 0], axes[0, 1], axes[0, 2], origin[0]
     va, vb, vc, v0 = axes[1, 0], axes[1, 1], axes[1, 2], origin[1]
     cells = np.zeros(len(points), dtype=np.int32)
     sums = np.zeros((rows * columns, 2))
+    above, close = np.empty(len(points), dtype=np.bool_), np.empty(len(points), dtype=np.bool_)
     for i in range(len(points)):
-        height = heights[i]
-        if not height > -3.0 * sigmas[i] - relief[0]:
-            continue
         x, y, z = points[i, 0], points[i, 1], points[i, 2]
+        height = a * x + b * y + c * z + offset
+        sigma = floor
+        if height <= sunk or height > tall or abs(height) >= near:
+            dx, dy, dz = x - viewpoint[0], y - viewpoint[1], z - viewpoint[2]
+            sigma = value_at(np.sqrt(dx * dx + dy * dy + dz * dz), noise[0], noise[1])
+        most = max(tall, 8.0 * sigma)
+        above[i] = height > most
+        close[i] = abs(height) < max(near, 4.0 * sigma)
+        if not height > -3.0 * sigma - low:
+            continue
         u = ua * x + ub * y + uc * z - u0
         v = va * x + vb * y + vc * z - v0
         if not (0.0 <= u < rows - 2 and 0.0 <= v < columns - 2):
             continue
         cell = np.uint32((int(u) + 1) * columns + int(v) + 1)
         sums[cell, 0] += 1.0
-        sums[cell, 1] += min(height, max(relief[1], 8.0 * sigmas[i]))
+        sums[cell, 1] += min(height, most)
         cells[i] = cell
-    return cells, sums.reshape(rows, columns, 2)
+    return cells, sums.reshape(rows, columns, 2), above, close
 
 
 @kernel
@@ -142,21 +168,3 @@ def points_over(cells: Cells, kept: Mask) -> NDArray[np.intp]:
             rows[count] = i
             count += 1
     return rows[:count]
-
-
-@kernel
-def far_above(heights: Array, sigmas: Array, least: float, deviations: float) -> Mask:
-    """Tell which heights (N,) exceed both `least` and so many of their deviations (N,)."""
-    above = np.empty(len(heights), dtype=np.bool_)
-    for i in range(len(heights)):
-        above[i] = heights[i] > max(least, deviations * sigmas[i])
-    return above
-
-
-@kernel
-def close_to(heights: Array, sigmas: Array, least: float, deviations: float) -> Mask:
-    """Tell which heights (N,) are, on either side, within the larger of the two."""
-    close = np.empty(len(heights), dtype=np.bool_)
-    for i in range(len(heights)):
-        close[i] = abs(heights[i]) < max(least, deviations * sigmas[i])
-    return close

@@ -6,7 +6,8 @@ import numpy as np
 from numpy.typing import NDArray
 from scipy.spatial import cKDTree
 
-from shared.geometry.points import principal_axes
+from services.perception.own_frame import about_mean
+from shared.geometry.points import principal_axes_of_centred
 from shared.geometry.rotation import unit
 
 Array = NDArray[np.float64]
@@ -73,13 +74,14 @@ def goes_on_behind(bar: Array, body: Array, viewpoint: Array, reach: float, voxe
     viewpoint : (3,) array
         Position of the sensor.
     """
-    _, axes = principal_axes(bar)
+    middle, centred = about_mean(bar)
+    _, axes = principal_axes_of_centred(centred)
     size = np.ptp(bar @ axes, axis=0)
     if size[0] < _SLENDER * max(float(size[1]), voxel):
         return False
-    middle, centre = bar.mean(axis=0), body.mean(axis=0)
+    centre = body.mean(axis=0)
     ahead = axes[:, 0] * np.copysign(1.0, float((centre - middle) @ axes[:, 0]))
-    along = (bar - middle) @ ahead
+    along = centred @ ahead
     offsets = body - middle
     advance = offsets @ ahead
     aside = np.linalg.norm(offsets - advance[:, None] * ahead, axis=1)

@@ -50,9 +50,7 @@ def choose_support(
         others = [other for other in planes if other is not plane]
         top = lay_out(plane, others, view, settings)
         bare = bare or top
-        carried = [
-            appeal(thing, view, target) * _contact(top, thing, view) for thing in top.objects
-        ]
+        carried = [appeal(thing, view, target) * _contact(top, thing) for thing in top.objects]
         worth = _weight(plane, view) * max(carried, default=0.0)
         if worth > most:
             best, most = top, worth
@@ -72,10 +70,10 @@ def _weight(plane: Plane, view: Observation) -> float:
     return float(np.sqrt(plane.share * plane.area)) * (0.1 + 0.9 * level**2)
 
 
-def _contact(top: Tabletop, thing: Thing, view: Observation) -> float:
+def _contact(top: Tabletop, thing: Thing) -> float:
     """Return 1 for a thing that touches the plane, less the higher its lowest point is."""
     assert top.plane is not None
-    gap = float(top.plane.heights(view.points[thing.members]).min())
+    gap = float(top.plane.heights(thing.points).min())
     return 1.0 / (1.0 + max(gap, 0.0) / _CONTACT_M)
 
 
@@ -100,7 +98,7 @@ def _nothing_on(top: Tabletop, view: Observation, settings: PerceptionSettings) 
         size = f"{len(largest.members)} points, {1e3 * largest.extent:.0f} mm long"
         found = f"the largest thing off it has {size}"
         if top.plane is not None:
-            tallest = 1e3 * float(top.plane.heights(view.points[largest.members]).max())
+            tallest = 1e3 * float(top.plane.heights(largest.points).max())
             found += f" and rises {tallest:.1f} mm"
     else:
         found = "nothing stands out of it" if top.plane is not None else "no points are close"
@@ -109,7 +107,7 @@ def _nothing_on(top: Tabletop, view: Observation, settings: PerceptionSettings) 
     if top.plane is not None:
         heights = top.plane.heights(view.points)
         beyond = (heights < -max(0.01, 6 * top.residual)) & (heights > -_BEHIND_M)
-        behind = int(np.count_nonzero(top.plane.carries(view.points[beyond], 0.0)))
+        behind = int(np.count_nonzero(top.plane.carries(view.points.compress(beyond, axis=0), 0.0)))
         off = len(view.points) - top.inliers
         if behind >= max(settings.min_object_points, off / 2):
             message += (

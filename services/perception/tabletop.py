@@ -9,13 +9,13 @@ import numpy as np
 from numpy.typing import NDArray
 
 from services.perception.cloud import cluster
+from services.perception.median import median
 from services.perception.noise import SIGMA_PER_MEDIAN, measure_noise
 from services.perception.observation import Observation
 from services.perception.occlusion import join_hidden
-from services.perception.pixels import heights_above
+from services.perception.pixels import distances, heights_above
 from services.perception.plane import SAMPLE, Plane, refine
 from services.perception.relief import relief
-from services.perception.relief_map import close_to
 from services.perception.settings import PerceptionSettings
 from services.perception.things import Thing, things_of
 
@@ -61,14 +61,12 @@ def lay_out(
     """Return the view divided by `plane`, refined, given the `others` that were found."""
     points = view.points
     plane = refine(plane, points, settings)
-    heights = heights_above(points, np.ascontiguousarray(plane.normal), plane.offset)
-    near = np.arange(0, len(points), max(1, len(points) // SAMPLE))
-    near = near[np.abs(heights[near]) < 2 * settings.plane_tolerance_m]
-    noise = measure_noise(heights[near], view.ranges[near])
-    sigmas = noise.at(view.ranges)
-    standing = relief(plane, points, heights, view.viewpoint, noise, sigmas, settings)
-    on_plane = close_to(heights, sigmas, settings.plane_tolerance_m, 4.0)
-    on_plane &= ~standing
+    sample = np.ascontiguousarray(points[:: max(1, len(points) // SAMPLE)])
+    heights = heights_above(sample, np.ascontiguousarray(plane.normal), plane.offset)
+    near = np.abs(heights) < 2 * settings.plane_tolerance_m
+    heights, ranges = heights[near], distances(sample, view.viewpoint)[near]
+    noise = measure_noise(heights, ranges)
+    standing, on_plane = relief(plane, points, view.viewpoint, noise, settings)
     furniture = _furniture(plane, others, points, standing, settings)
     members = np.flatnonzero(standing & ~furniture)
     spacing = float(np.sqrt(plane.area / max(1.0, plane.share * len(points))))
@@ -78,7 +76,7 @@ def lay_out(
         for thing in things
         if thing.is_object(settings) and plane.carries(thing.centroid[None], _RIM_M)[0]
     ]
-    residual = SIGMA_PER_MEDIAN * float(np.median(np.abs(heights[near])))
+    residual = SIGMA_PER_MEDIAN * median(np.abs(heights))
     return Tabletop(
         plane, residual, int(np.count_nonzero(on_plane)), on_plane, furniture, things, objects
     )
@@ -97,7 +95,7 @@ def _clusters(
     view: Observation, members: NDArray[np.intp], spacing: float, settings: PerceptionSettings
 ) -> list[Thing]:
     gap = max(settings.cluster_gap_m, 3 * spacing)
-    labels = cluster(view.points[members], gap, _MIN_NEIGHBOURS)
+    labels = cluster(view.points.take(members, axis=0), gap, _MIN_NEIGHBOURS)
     return join_hidden(things_of(view.points, members, labels), view, gap, settings)
 
 
@@ -117,9 +115,9 @@ def _furniture(
     for other in others:
         if other.length <= settings.max_object_extent_m or _same_surface(plane, other):
             continue
-        near = rows[np.abs(other.heights(points[rows])) < settings.plane_tolerance_m]
-        near = near[other.carries(points[near], _RIM_M)]
-        reach = np.ptp(points[near] @ other.basis, axis=0).max() if len(near) else 0.0
+        near = rows[np.abs(other.heights(points.take(rows, axis=0))) < settings.plane_tolerance_m]
+        near = near[other.carries(points.take(near, axis=0), _RIM_M)]
+        reach = np.ptp(points.take(near, axis=0) @ other.basis, axis=0).max() if len(near) else 0.0
         furniture[near] |= reach > settings.max_object_extent_m
     return furniture
 

@@ -10,8 +10,10 @@ import numpy as np
 from numpy.typing import NDArray
 
 from services.perception.observation import Observation
+from services.perception.own_frame import about_mean
+from services.perception.pixels import distances
 from services.perception.settings import PerceptionSettings
-from shared.geometry.points import principal_axes
+from shared.geometry.points import principal_axes_of_centred
 
 Array = NDArray[np.float64]
 
@@ -26,6 +28,8 @@ class Thing:
     ----------
     members : (K,) array
         Indices into the observation's points, increasing.
+    points : (K, 3) array
+        These points.
     centroid : (3,) array
         Mean point.
     extent : float
@@ -33,6 +37,7 @@ class Thing:
     """
 
     members: NDArray[np.intp]
+    points: Array
     centroid: Array
     extent: float
 
@@ -45,20 +50,21 @@ class Thing:
 
     def off_gaze(self, view: Observation) -> float:
         """Return the angle (radians) between the sensor's gaze and the nearest member."""
-        rays = view.points[self.members] - view.viewpoint
-        cosines = (rays @ view.gaze) / np.maximum(view.ranges[self.members], 1e-12)
+        ranges = distances(self.points, view.viewpoint)
+        cosines = ((self.points - view.viewpoint) @ view.gaze) / np.maximum(ranges, 1e-12)
         return float(np.arccos(np.clip(cosines.max(), -1.0, 1.0)))
 
-    def distance(self, view: Observation, target: Array) -> float:
+    def distance(self, target: Array) -> float:
         """Return the distance (metres) of its nearest point to `target`."""
-        return float(np.sqrt(((view.points[self.members] - target) ** 2).sum(axis=1).min()))
+        return float(np.sqrt(((self.points - target) ** 2).sum(axis=1).min()))
 
 
 def measure_thing(points: Array, members: NDArray[np.intp]) -> Thing:
     """Return the thing that consists of `points[members]`."""
-    cloud = points[members]
-    _, axes = principal_axes(cloud)
-    return Thing(members, cloud.mean(axis=0), float(np.ptp(cloud @ axes[:, 0])))
+    cloud = points.take(members, axis=0)
+    centroid, centred = about_mean(cloud)
+    _, axes = principal_axes_of_centred(centred)
+    return Thing(members, cloud, centroid, float(np.ptp(cloud @ axes[:, 0])))
 
 
 def things_of(points: Array, members: NDArray[np.intp], labels: NDArray[np.int32]) -> list[Thing]:
@@ -78,10 +84,12 @@ def appeal(thing: Thing, view: Observation, target: Array | None) -> float:
     Falls with the distance to `target`, or without one with the angle from the gaze.
     """
     if target is not None:
-        return 1.0 / (1.0 + thing.distance(view, target) / 0.05)
+        return 1.0 / (1.0 + thing.distance(target) / 0.05)
     return float(1.0 / (1.0 + (thing.off_gaze(view) / _CENTRAL_RAD) ** 2))
 
 
 def most_appealing(things: Sequence[Thing], view: Observation, target: Array | None) -> Thing:
     """Return the thing that is meant; of equals, the one with the most points."""
+    if len(things) == 1:
+        return things[0]
     return max(things, key=lambda thing: appeal(thing, view, target))

@@ -5,7 +5,7 @@ from __future__ import annotations
 import numpy as np
 from numpy.typing import NDArray
 
-from services.perception.voxels import bounds
+from services.perception.own_frame import bounds
 from shared.errors import WrongUnits
 from shared.schemas.scene import InputKind
 
@@ -24,11 +24,13 @@ def require_metres(points: Array, kind: InputKind, field: str) -> None:
     """
     if len(points) == 0:
         return
-    sample = points[:: max(1, len(points) // _SAMPLE)]
-    with np.errstate(over="ignore", invalid="ignore"):  # depth times scale may be infinite
-        low, high = np.percentile(sample, [5, 95], axis=0)
-        extent = float(np.nan_to_num(high - low, nan=np.inf, posinf=np.inf).max())
+    columns = np.ascontiguousarray(points[:: max(1, len(points) // _SAMPLE)].T)
     allowed = MAX_EXTENT_M[kind]
+    with np.errstate(over="ignore", invalid="ignore"):  # depth times scale may be infinite
+        if np.ptp(columns, axis=1).max() <= allowed:
+            return
+        low, high = np.percentile(columns, [5, 95], axis=1)
+        extent = float(np.nan_to_num(high - low, nan=np.inf, posinf=np.inf).max())
     if extent > allowed:
         remedy = "divide them by 1000"
         if field == "depth":

@@ -5,6 +5,7 @@ from __future__ import annotations
 import numpy as np
 from numpy.typing import NDArray
 
+from services.perception.own_frame import bounds, own_frame
 from shared.jit import kernel
 
 Array = NDArray[np.float64]
@@ -31,23 +32,6 @@ def voxel_means(points: Array, edge: float) -> tuple[Array, Labels]:
     edge = max(edge, 2 * reach / _MAX_CELLS)
     voxel, count = _number_voxels(local, int(reach / edge) + 1, edge)
     return _means(points, voxel, count), voxel
-
-
-def own_frame(points: Array) -> Array:
-    """Return points (N, 3) about their mean along their principal axes, of either sign."""
-    centred = points - points.mean(axis=0)
-    return np.ascontiguousarray(centred @ np.linalg.eigh(centred.T @ centred)[1])
-
-
-@kernel
-def bounds(points: Array) -> tuple[Array, Array]:
-    """Return the least and the largest coordinates (3,) of points (N, 3), N >= 1."""
-    low, high = points[0].copy(), points[0].copy()
-    for i in range(len(points)):
-        for axis in range(3):
-            low[axis] = min(low[axis], points[i, axis])
-            high[axis] = max(high[axis], points[i, axis])
-    return low, high
 
 
 @kernel

@@ -42,8 +42,12 @@ def bounds(points: Array) -> tuple[Array, Array]:
 
 def principal_axes(points: Array) -> tuple[Array, Array]:
     """Return variances (3,), descending, and axes (3, 3) as right-handed columns."""
-    centred = points - points.mean(axis=0)
-    values, vectors = np.linalg.eigh(centred.T @ centred / max(len(points), 1))
+    return principal_axes_of_centred(points - points.mean(axis=0))
+
+
+def principal_axes_of_centred(centred: Array) -> tuple[Array, Array]:
+    """Return `principal_axes` of points (N, 3) given about their mean."""
+    values, vectors = np.linalg.eigh(centred.T @ centred / max(len(centred), 1))
     vectors = vectors[:, ::-1]
     if np.linalg.det(vectors) < 0:
         vectors[:, 2] *= -1

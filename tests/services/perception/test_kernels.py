@@ -14,24 +14,24 @@ from scipy.spatial.transform import Rotation
 
 from services.perception.cloud import cluster, thin
 from services.perception.interpolation import interpolate
+from services.perception.median import median
 from services.perception.moments import biweight_moments, moments_near
+from services.perception.own_frame import about_mean, bounds, own_frame
 from services.perception.pixels import (
     distances,
     heights_above,
     points_of_depth,
     points_within,
 )
-from services.perception.ransac import count_votes
+from services.perception.ransac import corners_and_normals, count_votes
 from services.perception.relief_map import (
-    close_to,
-    far_above,
-    gather_heights,
     grow,
     highest_around,
     points_over,
+    survey,
     window_means,
 )
-from services.perception.voxels import bounds, own_frame, voxel_means
+from services.perception.voxels import voxel_means
 from shared.geometry.points import points_from_depth
 from shared.geometry.rotation import unit
 from shared.jit import read_only
@@ -47,22 +47,24 @@ def test_points_of_depth(rng: np.random.Generator) -> None:
     depth[rng.random(depth.shape) < 0.2] = 0
     depth[0, :4] = [np.nan, np.inf, -5.0, 65535.0]
     intrinsics = np.array([[500.0, 3.0, 15.2], [0, 510.0, 11.7], [0, 0, 1]])
-    points, rows = points_of_depth(read_only(depth), read_only(intrinsics), 1e-4, 65535.0)
+    points, rows, reach = points_of_depth(read_only(depth), read_only(intrinsics), 1e-4, 65535.0)
     depth[0, :4] = 0
     expected = points_from_depth(depth, intrinsics, 1e-4)
     seen = np.flatnonzero(np.isfinite(expected[:, 2]))
     np.testing.assert_array_equal(rows, seen)
     np.testing.assert_allclose(points, expected[seen], rtol=1e-12)
+    assert reach == np.abs(points).max()
 
 
 def test_points_within(rng: np.random.Generator) -> None:
     points = rng.normal(0, 2, (50, 3))
     points[3, 1], points[7, 2], points[9, 0] = np.nan, np.inf, -np.inf
     for limit in (1.5, np.inf):
-        kept, rows = points_within(read_only(points), limit)
+        kept, rows, reach = points_within(read_only(points), limit)
         expected = np.flatnonzero((np.abs(points) < limit).all(axis=1))
         np.testing.assert_array_equal(rows, expected)
         np.testing.assert_array_equal(kept, points[expected])
+        assert reach == np.abs(kept).max()
 
 
 def test_distances_and_heights(rng: np.random.Generator) -> None:
@@ -85,21 +87,41 @@ def test_interpolation(knots: list[float], rng: np.random.Generator) -> None:
     )
 
 
+@pytest.mark.parametrize("count", [1, 2, 7, 500, 501])
+def test_median(count: int, rng: np.random.Generator) -> None:
+    values = rng.normal(size=count)
+    assert median(values) == np.median(values)
+
+
+@pytest.mark.parametrize("count", [1, 3, 200, 5000])
+def test_about_mean(count: int, rng: np.random.Generator) -> None:
+    """To the last bit: NumPy adds the rows of such an array up one by one, too."""
+    points = rng.normal(size=(count, 3)) + np.array([0.3, -2.0, 40.0])
+    mean, centred = about_mean(points)
+    np.testing.assert_array_equal(mean, points.mean(axis=0))
+    np.testing.assert_array_equal(centred, points - points.mean(axis=0))
+
+
 def test_moments(rng: np.random.Generator) -> None:
     points = rng.normal(0, 0.1, (300, 3)) + 1.0
     origin, normal, offset = points[0], unit([1.0, 2.0, -1.0]), 0.02
     centred = points - origin
     heights = np.abs(centred @ normal + offset)
     near = centred[heights < 0.05]
-    count, mean, scatter = moments_near(points, origin, normal, offset, 0.05)
-    assert count == len(near)
-    np.testing.assert_allclose(mean, near.mean(axis=0), atol=1e-14)
-    np.testing.assert_allclose(scatter, np.cov(near.T, bias=True), atol=1e-14)
+    planes = np.array([normal, [1.0, 0.0, 0.0]]), np.array([offset, 9.0])
+    count, mean, scatter = moments_near(points, origin, *planes, 0.05)
+    assert count.tolist() == [len(near), 0]
+    np.testing.assert_allclose(mean[0], near.mean(axis=0), atol=1e-14)
+    np.testing.assert_allclose(scatter[0], np.cov(near.T, bias=True), atol=1e-14)
+    assert not mean[1].any()
+    assert not scatter[1].any()
     weights = np.clip(1 - (heights / 0.08) ** 2, 0, None) ** 2
-    total, mean, scatter = biweight_moments(points, origin, normal, offset, 0.08)
-    assert total == pytest.approx(weights.sum())
-    np.testing.assert_allclose(mean, np.average(centred, axis=0, weights=weights), atol=1e-14)
-    np.testing.assert_allclose(scatter, np.cov(centred.T, aweights=weights, bias=True), atol=1e-14)
+    for step in (1, 4):
+        some, weight = centred[::step], weights[::step]
+        total, middle, spread = biweight_moments(points, step, origin, normal, offset, 0.08)
+        assert total == pytest.approx(weight.sum())
+        np.testing.assert_allclose(middle, np.average(some, axis=0, weights=weight), atol=1e-14)
+        np.testing.assert_allclose(spread, np.cov(some.T, aweights=weight, bias=True), atol=1e-14)
 
 
 def test_votes(rng: np.random.Generator) -> None:
@@ -111,6 +133,14 @@ def test_votes(rng: np.random.Generator) -> None:
         np.clip(1 - away**2, 0, None).sum(axis=0),
         rtol=1e-10,
     )
+
+
+def test_corners_and_normals(rng: np.random.Generator) -> None:
+    points, triples = rng.normal(size=(30, 3)), rng.integers(0, 30, (50, 3))
+    corners, normals = corners_and_normals(points, triples)
+    a, b, c = points[triples.T]
+    np.testing.assert_array_equal(corners, a)
+    np.testing.assert_array_equal(normals, np.cross(b - a, c - a))
 
 
 @pytest.mark.parametrize("spread", [0.2, 1e-9, 1e6])
@@ -154,16 +184,26 @@ def test_clusters_are_those_of_open3d(min_neighbours: int, rng: np.random.Genera
     assert len(set(a.tolist())) > 1 or min_neighbours == 1
 
 
-def test_heights_are_gathered_where_they_stand(rng: np.random.Generator) -> None:
+def test_a_survey_of_heights(rng: np.random.Generator) -> None:
     count, rows, columns, edge = 400, 9, 12, 0.01
     points = np.column_stack(
-        [rng.uniform(-0.01, 0.09, count), rng.uniform(-0.01, 0.12, count), np.zeros(count)]
+        [
+            rng.uniform(-0.01, 0.09, count),
+            rng.uniform(-0.01, 0.12, count),
+            rng.uniform(-0.02, 0.03, count),
+        ]
     )
-    heights, sigmas = rng.uniform(-0.01, 0.02, count), rng.uniform(5e-4, 2e-3, count)
-    axes = np.eye(3)[:2] / edge
-    cells, sums = gather_heights(
-        points, heights, sigmas, (0.001, 0.006), axes, np.zeros(2), rows, columns
-    )
+    viewpoint = np.array([0.0, 0.0, 0.5])
+    noise = np.array([0.4, 0.48, 0.55]), np.array([5e-4, 1e-3, 2e-3])
+    plane = np.array([0.0, 0.0, 1.0]), 0.001
+    cells, sums, above, close = survey(
+        points, plane, viewpoint, noise, (0.001, 0.006, 0.004), np.eye(3)[:2] / edge, np.zeros(2),
+        rows, columns,
+    )  # fmt: skip
+    heights = points[:, 2] + 0.001
+    sigmas = np.interp(np.linalg.norm(points - viewpoint, axis=1), *noise)
+    np.testing.assert_array_equal(above, heights > np.maximum(0.006, 8 * sigmas))
+    np.testing.assert_array_equal(close, np.abs(heights) < np.maximum(0.004, 4 * sigmas))
     number, total = np.zeros((rows, columns)), np.zeros((rows, columns))
     for i in range(count):
         row, column = np.floor(points[i, :2] / edge).astype(int) + 1
@@ -177,6 +217,7 @@ def test_heights_are_gathered_where_they_stand(rng: np.random.Generator) -> None
     np.testing.assert_array_equal(sums[:, :, 0], number)
     np.testing.assert_allclose(sums[:, :, 1], total, atol=1e-15)
     assert 0 < number.sum() < count
+    assert 0 < above.sum() < (~close).sum() < count
 
 
 def test_windows(rng: np.random.Generator) -> None:
@@ -213,13 +254,6 @@ def test_highest_around_and_points_over(rng: np.random.Generator) -> None:
     )
 
 
-def test_heights_against_their_deviations(rng: np.random.Generator) -> None:
-    heights, sigmas = rng.normal(0, 0.01, 200), rng.uniform(0, 0.004, 200)
-    reach = np.maximum(0.006, 3 * sigmas)
-    np.testing.assert_array_equal(far_above(heights, sigmas, 0.006, 3.0), heights > reach)
-    np.testing.assert_array_equal(close_to(heights, sigmas, 0.006, 3.0), np.abs(heights) < reach)
-
-
 def test_warming_up_compiles_every_kernel_and_requests_none() -> None:
     """One combination of types each, or processes could overwrite each other's cache entries."""
     program = """
@@ -232,7 +266,7 @@ from shared.schemas.scene import PerceiveRequest
 modules = [importlib.import_module(f"services.perception.{m.name}")
            for m in pkgutil.iter_modules(package.__path__)]
 kernels = {name: value for module in modules for name, value in vars(module).items()
-           if hasattr(value, "signatures")}
+           if hasattr(value, "signatures") and name != "value_at"}  # compiled with its callers
 stage = Perception()
 stage.warm_up()
 print(len(kernels), {len(kernel.signatures) for kernel in kernels.values()})
