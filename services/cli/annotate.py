@@ -10,7 +10,19 @@ import typer
 from rich.console import Console
 from rich.progress import BarColumn, MofNCompleteColumn, Progress, TextColumn, TimeRemainingColumn
 
-from services.cli.options import Input, Reasoning, json_option
+from services.cli.options import (
+    DepthScaleOption,
+    GripperOption,
+    Input,
+    InputOption,
+    IntrinsicsOption,
+    MaxGraspsOption,
+    Reasoning,
+    ReasoningOption,
+    SeedOption,
+    ViewpointOption,
+    json_option,
+)
 
 if TYPE_CHECKING:
     from services.annotate.drive import Summary
@@ -31,20 +43,14 @@ def annotate(
     address: Annotated[
         str | None, typer.Option(help="Of a Ray cluster, as in 10.0.0.1:6379 or auto")
     ] = None,
-    reasoning: Annotated[Reasoning, typer.Option(help="v1: rule per task; v2: affordances")] = (
-        Reasoning.v2
-    ),
-    kind: Annotated[
-        Input, typer.Option("--input", help="scene: find the object first")
-    ] = Input.scene,
-    gripper: Annotated[str, typer.Option(help="A name from GET /grippers")] = "panda",
-    max_grasps: Annotated[int, typer.Option(min=0, max=100)] = 10,
-    seed: Annotated[int, typer.Option(min=0)] = 0,
-    viewpoint: Annotated[str, typer.Option(help="Sensor position, as [x, y, z]")] = "[0, 0, 0]",
-    intrinsics: Annotated[
-        str | None, typer.Option(help="3x3 pinhole matrix as JSON, for PNGs")
-    ] = None,
-    depth_scale: Annotated[float | None, typer.Option(help="Metres per unit of depth")] = None,
+    reasoning: ReasoningOption = Reasoning.v2,
+    kind: InputOption = Input.scene,
+    gripper: GripperOption = "panda",
+    max_grasps: MaxGraspsOption = 10,
+    seed: SeedOption = 0,
+    viewpoint: ViewpointOption = "[0, 0, 0]",
+    intrinsics: IntrinsicsOption = None,
+    depth_scale: DepthScaleOption = None,
     part_rows: Annotated[
         int, typer.Option(min=1, help="Rows of a Parquet file; what a crash loses at most")
     ] = 256,

@@ -9,6 +9,8 @@ import typer
 from rich.console import Console
 from rich.progress import BarColumn, MofNCompleteColumn, Progress, TextColumn, TimeRemainingColumn
 
+from services.cli.options import SeedOption
+
 
 def dataset(
     out: Annotated[Path, typer.Argument(help="A new folder, or a dataset to go on with")],
@@ -29,7 +31,7 @@ def dataset(
     variants: Annotated[
         int, typer.Option(min=0, help="Random variants of every class as well")
     ] = 0,
-    seed: Annotated[int, typer.Option(min=0)] = 0,
+    seed: SeedOption = 0,
     workers: Annotated[int, typer.Option(min=1, help="Processes")] = 2,
 ) -> None:
     """Write labelled depth views of objects on a table to OUT (docs/dataset.md).

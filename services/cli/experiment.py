@@ -13,6 +13,7 @@ import typer
 from rich.console import Console
 
 from services.cli.ask import backend
+from services.cli.options import UrlOption
 from shared.client import Sparge
 from shared.errors import InvalidInput
 
@@ -27,9 +28,7 @@ def experiment(
             "or primitives"
         ),
     ],
-    url: Annotated[
-        str | None, typer.Option(help="Ask this backend instead of starting one")
-    ] = None,
+    url: UrlOption = None,
     scans: Annotated[
         list[Path] | None,
         typer.Option(help="Also ask about this folder of labelled views; may be repeated"),

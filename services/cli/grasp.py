@@ -8,7 +8,20 @@ from typing import Annotated
 import typer
 from rich.console import Console
 
-from services.cli.options import Input, Reasoning, json_option
+from services.cli.options import (
+    DepthScaleOption,
+    GripperOption,
+    Input,
+    InputOption,
+    IntrinsicsOption,
+    MaxGraspsOption,
+    Reasoning,
+    ReasoningOption,
+    SeedOption,
+    UrlOption,
+    ViewpointOption,
+    json_option,
+)
 from services.cli.saving.kinds import HELP
 
 
@@ -17,25 +30,17 @@ def grasp(
         Path, typer.Argument(exists=True, dir_okay=False, help=".npz, .ply, .pcd, .xyz or .png")
     ],
     task: Annotated[str, typer.Option(help="What the object is for: pouring, hammering, ...")],
-    reasoning: Annotated[Reasoning, typer.Option(help="v1: rule per task; v2: affordances")] = (
-        Reasoning.v2
-    ),
-    kind: Annotated[
-        Input, typer.Option("--input", help="scene: find the object first")
-    ] = Input.scene,
-    gripper: Annotated[str, typer.Option(help="A name from GET /grippers")] = "panda",
-    max_grasps: Annotated[int, typer.Option(min=0, max=100)] = 5,
-    seed: Annotated[int, typer.Option(min=0)] = 0,
-    viewpoint: Annotated[str, typer.Option(help="Sensor position, as [x, y, z]")] = "[0, 0, 0]",
-    intrinsics: Annotated[
-        str | None, typer.Option(help="3x3 pinhole matrix as JSON, for a PNG")
-    ] = None,
-    depth_scale: Annotated[float | None, typer.Option(help="Metres per unit of depth")] = None,
+    reasoning: ReasoningOption = Reasoning.v2,
+    kind: InputOption = Input.scene,
+    gripper: GripperOption = "panda",
+    max_grasps: MaxGraspsOption = 5,
+    seed: SeedOption = 0,
+    viewpoint: ViewpointOption = "[0, 0, 0]",
+    intrinsics: IntrinsicsOption = None,
+    depth_scale: DepthScaleOption = None,
     save: Annotated[list[Path] | None, typer.Option(help=HELP)] = None,
     as_json: Annotated[bool, typer.Option("--json", help="Print the JSON answer only")] = False,
-    url: Annotated[
-        str | None, typer.Option(help="Ask this backend instead of starting one")
-    ] = None,
+    url: UrlOption = None,
 ) -> None:
     """Find where and how to grasp the object in FILE for a task."""
     from services.cli.ask import Question, ask

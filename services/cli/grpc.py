@@ -8,21 +8,17 @@ from typing import Annotated
 
 import typer
 
-from services.cli.options import LogLevel
+from services.cli.options import HostOption, InsecureOption, LogLevelOption, PortOption
 
 
 def grpc(
-    host: Annotated[str, typer.Option(help="Address to listen on")] = "127.0.0.1",
-    port: Annotated[int, typer.Option(min=0, max=65535)] = 50051,
+    host: HostOption = "127.0.0.1",
+    port: PortOption = 50051,
     url: Annotated[
         str | None, typer.Option(help="Ask the gateway here instead of starting a backend")
     ] = None,
-    log_level: Annotated[
-        LogLevel | None, typer.Option(help="Instead of SPARGE_LOG_LEVEL; info without both")
-    ] = None,
-    insecure: Annotated[
-        bool, typer.Option("--insecure", help="Answer other machines without API keys")
-    ] = False,
+    log_level: LogLevelOption = None,
+    insecure: InsecureOption = False,
 ) -> None:
     """Serve the backend over gRPC (proto/sparge.proto), with health and reflection.
 

@@ -18,7 +18,7 @@ from services.cli.grasp import grasp
 from services.cli.grpc import grpc
 from services.cli.key import key_commands
 from services.cli.mcp import mcp
-from services.cli.options import LogLevel
+from services.cli.options import HostOption, InsecureOption, LogLevelOption, PortOption
 from services.cli.rule import rule_commands
 from services.cli.task import task_commands
 from services.cli.view import view
@@ -56,14 +56,10 @@ def main() -> None:
 
 @app.command()
 def serve(
-    host: Annotated[str, typer.Option(help="Address to listen on")] = "127.0.0.1",
-    port: Annotated[int, typer.Option(min=0, max=65535)] = 8000,
-    log_level: Annotated[
-        LogLevel | None, typer.Option(help="Instead of SPARGE_LOG_LEVEL; info without both")
-    ] = None,
-    insecure: Annotated[
-        bool, typer.Option("--insecure", help="Answer other machines without API keys")
-    ] = False,
+    host: HostOption = "127.0.0.1",
+    port: PortOption = 8000,
+    log_level: LogLevelOption = None,
+    insecure: InsecureOption = False,
     grpc_port: Annotated[
         int | None, typer.Option(min=1, max=65535, help="Serve gRPC there as well")
     ] = None,

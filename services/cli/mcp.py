@@ -8,14 +8,14 @@ from typing import Annotated
 
 import typer
 
+from services.cli.options import UrlOption
+
 
 def mcp(
     root: Annotated[
         Path, typer.Option(help="Files are read below this folder only", file_okay=False)
     ] = Path(),
-    url: Annotated[
-        str | None, typer.Option(help="Ask this backend instead of starting one")
-    ] = None,
+    url: UrlOption = None,
     read_only: Annotated[
         bool, typer.Option("--read-only", help="No tools that add or remove tasks")
     ] = False,

@@ -3,6 +3,7 @@
 from __future__ import annotations
 
 from enum import StrEnum
+from typing import Annotated
 
 import orjson
 import typer
@@ -29,6 +30,27 @@ class LogLevel(StrEnum):
     info = "info"
     warning = "warning"
     error = "error"
+
+
+ReasoningOption = Annotated[Reasoning, typer.Option(help="v1: rule per task; v2: affordances")]
+InputOption = Annotated[Input, typer.Option("--input", help="scene: find the object first")]
+GripperOption = Annotated[str, typer.Option(help="A name from GET /grippers")]
+MaxGraspsOption = Annotated[int, typer.Option(min=0, max=100)]
+SeedOption = Annotated[int, typer.Option(min=0)]
+_VIEWPOINT = typer.Option(help="Sensor position, as [x, y, z]")
+ViewpointOption = Annotated[str, _VIEWPOINT]
+MaybeViewpointOption = Annotated[str | None, _VIEWPOINT]
+IntrinsicsOption = Annotated[str | None, typer.Option(help="3x3 pinhole matrix as JSON, for a PNG")]
+DepthScaleOption = Annotated[float | None, typer.Option(help="Metres per unit of depth")]
+UrlOption = Annotated[str | None, typer.Option(help="Ask this backend instead of starting one")]
+HostOption = Annotated[str, typer.Option(help="Address to listen on")]
+PortOption = Annotated[int, typer.Option(min=0, max=65535)]
+LogLevelOption = Annotated[
+    LogLevel | None, typer.Option(help="Instead of SPARGE_LOG_LEVEL; info without both")
+]
+InsecureOption = Annotated[
+    bool, typer.Option("--insecure", help="Answer other machines without API keys")
+]
 
 
 def json_option(name: str, text: str | None) -> object:

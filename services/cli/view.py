@@ -11,7 +11,13 @@ from typing import Annotated
 import typer
 from rich.console import Console
 
-from services.cli.options import json_option
+from services.cli.options import (
+    DepthScaleOption,
+    IntrinsicsOption,
+    MaybeViewpointOption,
+    UrlOption,
+    json_option,
+)
 from shared.errors import InvalidInput
 from shared.loopback import is_loopback
 from shared.settings import PROJECT_ROOT
@@ -26,16 +32,12 @@ def view(
             exists=True, metavar="[FILE|FOLDER]...", help="Clouds; without any, the bundled views"
         ),
     ] = None,
-    url: Annotated[
-        str | None, typer.Option(help="Ask this backend instead of starting one")
-    ] = None,
+    url: UrlOption = None,
     host: Annotated[str, typer.Option(help="Address to serve the page on")] = "127.0.0.1",
     port: Annotated[int, typer.Option(min=1, max=65535)] = 8080,
-    viewpoint: Annotated[str | None, typer.Option(help="Sensor position, as [x, y, z]")] = None,
-    intrinsics: Annotated[
-        str | None, typer.Option(help="3x3 pinhole matrix as JSON, for a PNG")
-    ] = None,
-    depth_scale: Annotated[float | None, typer.Option(help="Metres per unit of depth")] = None,
+    viewpoint: MaybeViewpointOption = None,
+    intrinsics: IntrinsicsOption = None,
+    depth_scale: DepthScaleOption = None,
     opens: Annotated[bool, typer.Option("--open", help="Open the browser")] = False,
     insecure: Annotated[
         bool, typer.Option("--insecure", help="Serve the page to other machines, without keys")
