@@ -81,6 +81,10 @@ def serve(
     if insecure:
         settings = settings.model_copy(update={"insecure": True})
     require_guarded(host, settings)
+    if grpc_port is not None:
+        from services.grpc.app import require_free
+
+        require_free(host, grpc_port)
 
     def create() -> FastAPI:
         app = create_app(settings)

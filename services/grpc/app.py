@@ -6,6 +6,7 @@ import asyncio
 import contextlib
 import logging
 import signal
+import socket
 from collections.abc import AsyncIterator
 
 import grpc
@@ -76,6 +77,21 @@ async def serving(
             await servicer.enter_graceful_shutdown()
             await server.stop(settings.stop_s)
             log.info("gRPC stopped")
+
+
+def require_free(host: str, port: int) -> None:
+    """Return if `port` of `host` can be listened on; a server that cannot start says so too late.
+
+    Raises
+    ------
+    InvalidInput
+        It is taken, or no address of this machine.
+    """
+    family = socket.AF_INET6 if ":" in host else socket.AF_INET
+    try:
+        socket.create_server((host.strip("[]"), port), family=family).close()
+    except OSError as error:
+        raise InvalidInput(f"cannot listen on {host}:{port}: {error.strerror or error}") from None
 
 
 def beside(gateway: FastAPI, settings: GrpcSettings, host: str, port: int) -> FastAPI:

@@ -5,6 +5,7 @@ from __future__ import annotations
 import json
 import os
 import signal
+import socket
 import subprocess
 import sys
 import time
@@ -93,6 +94,15 @@ def test_a_backend_that_is_not_there(environment: dict[str, str]) -> None:
     )
     assert done.returncode == 1
     assert "stage_unavailable" in done.stderr
+
+
+def test_serve_says_that_the_port_of_grpc_is_taken(environment: dict[str, str]) -> None:
+    with socket.create_server(("127.0.0.1", 0)) as taken:
+        port = str(taken.getsockname()[1])
+        done = sparge(environment, "serve", "--port", "0", "--grpc-port", port)
+    assert done.returncode == 1
+    assert f"cannot listen on 127.0.0.1:{port}" in done.stderr
+    assert "Traceback" not in done.stderr
 
 
 def test_serve_answers_and_stops_on_sigterm(environment: dict[str, str]) -> None:
