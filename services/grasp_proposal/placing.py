@@ -84,15 +84,22 @@ def place_hands(
     hands, depths = tips.shape
     depth, left = np.full((hands, 2), -1, dtype=np.int32), np.zeros((hands, 2), dtype=np.int32)
     right, front = np.zeros((hands, 2), dtype=np.int32), np.zeros((hands, 2))
-    around, inside = np.empty((3, len(surface))), np.empty(len(surface), dtype=np.int32)
+    around, along = np.empty((3, len(surface))), np.empty(len(surface))
+    inside = np.empty(len(surface), dtype=np.int32)
     profile = np.empty(2 * reach.half_bins + 1)
     fate = np.full((hands, depths), UNTRIED, dtype=np.int8)
-    count, centre = 0, -1
+    near, within, cut_by = 0, 0, -1
     for h in range(hands):
-        if of_sample[h] != centre:
-            centre = of_sample[h]
-            count = _around(surface, samples[centre], reach.radius, around)
-        _draw_profile(around[:, :count], rotations[h], reach, inside, profile)
+        if not tried[h].any():
+            continue
+        turned = cut_by < 0 or (rotations[h, :, 0] != rotations[cut_by, :, 0]).any()
+        moved = cut_by < 0 or of_sample[h] != of_sample[cut_by]
+        if moved:
+            near = _around(surface, samples[of_sample[h]], reach.radius, around)
+        if moved or turned:
+            within = _cut_slab(around[:, :near], rotations[h], reach.half_slab, along, inside)
+            cut_by = h
+        _draw_profile(around, inside[:within], rotations[h], reach, profile)
         most = -np.inf
         for d in range(depths):
             if not tried[h, d]:
@@ -141,26 +148,40 @@ def _around(surface: Array, centre: Array, radius: float, around: Array) -> int:
 
 
 @kernel
-def _draw_profile(
-    around: Array, rotation: Array, reach: Reach, inside: Bins, profile: Array
-) -> None:
-    """Write the nearest depth in each bin of the closing direction, inf where there is none.
+def _cut_slab(
+    around: Array, rotation: Array, half_slab: float, along: Array, inside: Bins
+) -> int:
+    """Write which of the points (3, N) lie in the hand's slab, and return how many do.
 
-    `inside` is room for one number per point. Which points lie in the slab is as good as
-    random, so it is found without a branch, which the processor would mispredict.
+    `along` and `inside` are room for one number per point. Which points lie in the slab is
+    as good as random, so it is found without a branch, which the processor would mispredict.
     """
-    profile[:] = np.inf
     px, py, pz = around[0], around[1], around[2]
     a, b, c = rotation[0, 0], rotation[1, 0], rotation[2, 0]
+    for n in range(len(px)):  # nothing but sums of products: vector instructions
+        along[n] = abs(a * px[n] + b * py[n] + c * pz[n])
     count = np.uint64(0)
     for n in range(len(px)):
         inside[count] = n
-        count += np.uint64(abs(a * px[n] + b * py[n] + c * pz[n]) < reach.half_slab)
+        count += np.uint64(along[n] < half_slab)
+    return int(count)
+
+
+@kernel
+def _draw_profile(
+    around: Array, inside: Bins, rotation: Array, reach: Reach, profile: Array
+) -> None:
+    """Write the nearest depth in each bin of the closing direction, inf where there is none.
+
+    Of the points (3, N) those count that `inside` names.
+    """
+    profile[:] = np.inf
+    px, py, pz = around[0], around[1], around[2]
     bins = 1.0 / reach.bin_size
     a, b, c = bins * rotation[0, 1], bins * rotation[1, 1], bins * rotation[2, 1]
     zx, zy, zz = rotation[0, 2], rotation[1, 2], rotation[2, 2]
     middle, last = reach.half_bins + 0.5, float(len(profile))
-    for i in range(count):
+    for i in range(len(inside)):
         row = np.uint64(inside[i])
         place = a * px[row] + b * py[row] + c * pz[row] + middle
         if 0.0 <= place < last:
