@@ -6,6 +6,7 @@ import numpy as np
 from numpy.typing import NDArray
 
 from shared.errors import EmptyCloud, InvalidInput
+from shared.geometry.points import bounds
 from shared.schemas.grasp import ProposeRequest
 from shared.superquadric import Superquadric
 
@@ -90,7 +91,8 @@ def checked_superquadrics(request: ProposeRequest, points: Array) -> tuple[Super
             f"quaternions not zero, nothing beyond {_MAX_COORDINATE:g}",
             field="superquadrics",
         )
-    low, high = points.min(axis=0), points.max(axis=0)
+    low, extents = bounds(points)
+    high = low + extents
     off = np.linalg.norm(rows[:, 5:8] - np.clip(rows[:, 5:8], low, high), axis=1)
     if len(off) and off.max() > np.linalg.norm(high - low):
         raise InvalidInput(

@@ -19,16 +19,21 @@ def principal_frames(scatters: Array) -> tuple[Array, Array]:
     Of symmetric matrices (G, 3, 3); for many of them several times as fast as `eigh`.
     """
     values, vectors = np.empty((len(scatters), 3)), np.empty((len(scatters), 3, 3))
+    a, v = np.empty((3, 3)), np.empty((3, 3))
     for g in range(len(scatters)):
-        values[g], vectors[g] = _principal_frame(scatters[g])
+        a[:], v[:] = scatters[g], 0.0
+        v[0, 0] = v[1, 1] = v[2, 2] = 1.0
+        _diagonalise(a, v)
+        _sort_axes(a, v, values[g], vectors[g])
     return values, vectors
 
 
 @kernel
-def _principal_frame(scatter: Array) -> tuple[Array, Array]:
-    """Cyclic Jacobi rotations (Golub and Van Loan, Matrix Computations, section 8.5)."""
-    a = scatter.copy()
-    v = np.eye(3)
+def _diagonalise(a: Array, v: Array) -> None:
+    """Turn `a` (3, 3) until it is diagonal, and the axes `v` (3, 3) with it.
+
+    By cyclic Jacobi rotations (Golub and Van Loan, Matrix Computations, section 8.5).
+    """
     for _ in range(_SWEEPS):
         off = abs(a[0, 1]) + abs(a[0, 2]) + abs(a[1, 2])
         if off <= 1e-15 * (abs(a[0, 0]) + abs(a[1, 1]) + abs(a[2, 2])):
@@ -49,7 +54,11 @@ def _principal_frame(scatter: Array) -> tuple[Array, Array]:
                     a[p, k], a[q, k] = c * a[p, k] - s * a[q, k], s * a[p, k] + c * a[q, k]
                 for k in range(3):
                     v[k, p], v[k, q] = c * v[k, p] - s * v[k, q], s * v[k, p] + c * v[k, q]
-    values, vectors = np.empty(3), np.empty((3, 3))
+
+
+@kernel
+def _sort_axes(a: Array, v: Array, values: Array, vectors: Array) -> None:
+    """Write the diagonal of `a`, ascending, and the columns of `v` in the same order."""
     first, last = 0, 0
     for k in range(1, 3):
         if a[k, k] < a[first, first]:
@@ -62,4 +71,3 @@ def _principal_frame(scatter: Array) -> tuple[Array, Array]:
     for k in range(3):
         values[k] = a[order[k], order[k]]
         vectors[:, k] = v[:, order[k]]
-    return values, vectors

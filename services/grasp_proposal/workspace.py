@@ -11,7 +11,7 @@ from numpy.typing import NDArray
 from services.grasp_proposal.checks import checked_points, checked_superquadrics, checked_viewpoint
 from services.grasp_proposal.surface import estimate_normals
 from services.grasp_proposal.thinning import MAX_POINTS, thin
-from shared.geometry.points import principal_axes
+from shared.geometry.points import bounds, principal_axes
 from shared.geometry.rotation import frame_from_z, unit
 from shared.geometry.se3 import inverse, pose_matrix, transform_points
 from shared.schemas.grasp import ProposeRequest
@@ -114,7 +114,7 @@ def build_workspace(request: ProposeRequest) -> Workspace:
             offset = round(offset + float(up @ outer_from_work[:3, 3]), _DIGITS)
         up = (work_from_outer[:3, :3] @ up).round(_DIGITS)
     points = transform_points(work_from_outer, points).round(_DIGITS)
-    order = np.lexsort((focus, *points.T))
+    order = _by_height(points, focus)
     points, focus = points[order], focus[order]
     fine = thin(points, _FINE, _FINE_COUNT)
     kept, kept_focus = points[fine], focus[fine]
@@ -141,6 +141,17 @@ def build_workspace(request: ProposeRequest) -> Workspace:
         bodies=bodies,
         outer_from_work=outer_from_work,
     )
+
+
+def _by_height(points: Array, focus: Mask) -> NDArray[np.intp]:
+    """Return the order of points (N, 3) by z, then y, x and focus: `lexsort` of the few equal z."""
+    order = np.argsort(points[:, 2])
+    heights = points[order, 2]
+    equal = heights[1:] == heights[:-1]
+    tied = np.append(equal, False) | np.append(False, equal)
+    rows = order[tied]
+    order[tied] = rows[np.lexsort((focus[rows], *points[rows].T))]
+    return order
 
 
 def _centre_of_mass(
@@ -172,7 +183,8 @@ def _near_obstacles(request: ProposeRequest, work_from_outer: Array, points: Arr
     if request.obstacle_points is None or not len(request.obstacle_points):
         return np.empty((0, 3))
     obstacles = transform_points(work_from_outer, request.obstacle_points).round(_DIGITS)
-    low, high = points.min(axis=0) - _HAND_REACH, points.max(axis=0) + _HAND_REACH
+    low, extents = bounds(points)
+    low, high = low - _HAND_REACH, low + extents + _HAND_REACH
     obstacles = obstacles[((obstacles >= low) & (obstacles <= high)).all(axis=1)]
     obstacles = obstacles[np.lexsort(obstacles.T)]
     return np.asarray(obstacles[thin(obstacles, _OBSTACLES, MAX_POINTS)])
@@ -188,21 +200,29 @@ def _up_and_offset(request: ProposeRequest) -> tuple[Array | None, float | None]
 
 def _usable_viewpoint(viewpoint: Array, points: Array) -> Array | None:
     """Return the viewpoint unless it lies among the points or next to them."""
-    rays = unit(points - viewpoint)
-    mean = rays.mean(axis=0)
-    if np.linalg.norm(mean) < 0.5 or (rays @ unit(mean)).min() < 0.3:
+    columns = np.ascontiguousarray(points.T) - viewpoint[:, None]
+    rays = columns / np.maximum(np.linalg.norm(columns, axis=0), 1e-12)
+    mean = rays.mean(axis=1)
+    if np.linalg.norm(mean) < 0.5 or (unit(mean) @ rays).min() < 0.3:
         return None
     return viewpoint
 
 
 def _scene_frame(points: Array, up: Array | None, viewpoint: Array | None) -> Array:
     centre = points.mean(axis=0)
-    view = None if viewpoint is None else unit(centre - viewpoint)
+    if up is not None and viewpoint is not None:
+        hint = unit(centre - viewpoint)
+        if abs(hint @ up) < _STEEP:
+            return pose_matrix(centre, frame_from_z(up, hint))
     _, axes = principal_axes(points)
     long_axis = _signed(axes[:, 0], points)
-    z_axis = up if up is not None else -view if view is not None else _signed(axes[:, 2], points)
-    hint = view if view is not None and abs(view @ z_axis) < _STEEP else long_axis
-    return pose_matrix(centre, frame_from_z(z_axis, hint))
+    if up is not None:
+        z_axis = up
+    elif viewpoint is not None:
+        z_axis = -unit(centre - viewpoint)
+    else:
+        z_axis = _signed(axes[:, 2], points)
+    return pose_matrix(centre, frame_from_z(z_axis, long_axis))
 
 
 def _signed(axis: Array, points: Array) -> Array:
