@@ -8,6 +8,7 @@ along the line of sight, where both edges that the pads touch are silhouettes.
 
 from __future__ import annotations
 
+from collections.abc import Sequence
 from dataclasses import dataclass
 
 import numpy as np
@@ -15,14 +16,22 @@ from numpy.typing import NDArray
 
 from services.grasp_proposal.surface import LocalFrames
 from shared.geometry.rotation import unit
+from shared.jit import kernel
 
 Array = NDArray[np.float64]
+Mask = NDArray[np.bool_]
+Vector = tuple[float, float, float]
 
-_CURVATURE_TURNS = np.radians([-70.0, -35.0, 0.0, 35.0, 70.0])
-_ABOVE_TURNS = np.radians([0.0, 30.0, -30.0, 60.0, -60.0, 90.0])
-_SIGHT_TURNS = np.radians([0.0, 45.0, -45.0, 90.0])
-_SIDE_TURNS = np.radians([0.0, 40.0, -40.0])
+_CURVATURE = (-70.0, -35.0, 0.0, 35.0, 70.0)
+_ABOVE = (0.0, 30.0, -30.0, 60.0, -60.0, 90.0)
+_SIGHT = (0.0, 45.0, -45.0, 90.0)
+_SIDE = (0.0, 40.0, -40.0)
+"""By how many degrees the hands of each family are turned."""
 _STEEPEST_RISE = 0.3
+_ALONG = 0.2
+"""Less of a part than this across the approach: it runs along it."""
+_LOOKS_DOWN = 0.05
+"""Less of a line of sight than this is level: it looks straight down."""
 
 
 @dataclass(frozen=True)
@@ -38,7 +47,7 @@ class Hands:
     """
 
     rotations: Array
-    possible: NDArray[np.bool_]
+    possible: Mask
 
 
 def hypothesise(
@@ -56,61 +65,137 @@ def hypothesise(
     turn_deg : float
         By which the hands of every family are turned further.
     """
-    part, more = frames.part_axes, np.radians(turn_deg)
-    families = [_about_curvature_axis(frames, more)]
+    more, part = np.radians(turn_deg), np.ascontiguousarray(frames.part_axes)
+    families = [
+        _about_curvature_axis(frames.curvature_axes, frames.normals, *_turns(_CURVATURE, more))
+    ]
     sight = None if viewpoint is None else unit(frames.points - viewpoint)
     if up is not None:
-        down = np.broadcast_to(-up, part.shape)
-        families.append(_across(down, part, _ABOVE_TURNS + more))
+        families.append(_across(np.tile(-up, (len(part), 1)), part, *_turns(_ABOVE, more)))
     if sight is not None:
-        families.append(_across(sight, part, _SIGHT_TURNS + more))
+        families.append(_across(sight, part, *_turns(_SIGHT, more)))
     if sight is not None and up is not None:
-        slanted = unit(sight - up)
-        families.append(_across(slanted, part, _SIGHT_TURNS + more))
-        families.append(_from_the_side(sight, up, more))
+        families.append(_across(unit(sight - up), part, *_turns(_SIGHT, more)))
+        level = sight - (sight @ up)[:, None] * up
+        families.append(_from_the_side(level, up, *_turns(_SIDE, more)))
     rotations = np.concatenate(families, axis=1)
-    possible = np.asarray(np.isfinite(rotations).all(axis=(2, 3)))
-    if up is not None:
-        possible &= rotations[:, :, :, 2] @ up <= _STEEPEST_RISE
-    return Hands(np.nan_to_num(rotations), possible)
+    return Hands(rotations, _possible(rotations, np.zeros(3) if up is None else up))
 
 
-def _about_curvature_axis(frames: LocalFrames, more: float) -> Array:
+def _turns(angles_deg: Sequence[float], more: float) -> tuple[Array, Array]:
+    """Return cosines and sines."""
+    turns = np.radians(angles_deg) + more
+    return np.cos(turns), np.sin(turns)
+
+
+@kernel
+def _about_curvature_axis(axes: Array, normals: Array, cos: Array, sin: Array) -> Array:
     """Approach against the normal, turned about the axis that the hand straddles."""
-    axis = unit(frames.curvature_axes)
-    inwards = -frames.normals
-    sideways = np.cross(axis, inwards)
-    cos, sin = np.cos(_CURVATURE_TURNS + more), np.sin(_CURVATURE_TURNS + more)
-    approach = cos[None, :, None] * inwards[:, None] + sin[None, :, None] * sideways[:, None]
-    x_axis = np.broadcast_to(axis[:, None], approach.shape)
-    return _stack(x_axis, approach)
+    rotations = np.empty((len(axes), len(cos), 3, 3))
+    for s in range(len(axes)):
+        axis = _unit(axes[s, 0], axes[s, 1], axes[s, 2])
+        inwards = (-normals[s, 0], -normals[s, 1], -normals[s, 2])
+        sideways = _cross(axis, inwards)
+        for k in range(len(cos)):
+            _write(rotations[s, k], axis, _turned(inwards, sideways, cos[k], sin[k]))
+    return rotations
 
 
-def _across(approach: Array, part: Array, turns: Array) -> Array:
-    """Approach along `approach` (S, 3), closing across the part, turned by each of `turns`."""
-    x_axis = part - approach * np.einsum("si,si->s", part, approach)[:, None]
-    length = np.linalg.norm(x_axis, axis=1, keepdims=True)
-    fallback = np.eye(3)[np.argmin(np.abs(approach), axis=1)]
-    fallback = fallback - approach * np.einsum("si,si->s", fallback, approach)[:, None]
-    x_axis = unit(np.where(length < 0.2, fallback, x_axis))
-    y_axis = np.cross(approach, x_axis)
-    cos, sin = np.cos(turns)[None, :, None], np.sin(turns)[None, :, None]
-    turned = cos * x_axis[:, None] + sin * y_axis[:, None]
-    return _stack(turned, np.broadcast_to(approach[:, None], turned.shape))
+@kernel
+def _across(approach: Array, part: Array, cos: Array, sin: Array) -> Array:
+    """Approach along `approach` (S, 3), closing across the part, turned by each of the angles."""
+    rotations = np.empty((len(part), len(cos), 3, 3))
+    for s in range(len(part)):
+        z_axis = (approach[s, 0], approach[s, 1], approach[s, 2])
+        x_axis = _flattened((part[s, 0], part[s, 1], part[s, 2]), z_axis)
+        if np.sqrt(x_axis[0] ** 2 + x_axis[1] ** 2 + x_axis[2] ** 2) < _ALONG:
+            least = np.argmin(np.abs(approach[s]))
+            fallback = (1.0 * (least == 0), 1.0 * (least == 1), 1.0 * (least == 2))
+            x_axis = _flattened(fallback, z_axis)
+        x_axis = _unit(x_axis[0], x_axis[1], x_axis[2])
+        y_axis = _cross(z_axis, x_axis)
+        for k in range(len(cos)):
+            _write(rotations[s, k], _turned(x_axis, y_axis, cos[k], sin[k]), z_axis)
+    return rotations
 
 
-def _from_the_side(sight: Array, up: Array, more: float) -> Array:
-    """Approach level, closing level: an upright part; NaN where one looks straight down."""
-    level = sight - (sight @ up)[:, None] * up
-    length = np.linalg.norm(level, axis=1, keepdims=True)
-    level = np.divide(level, length, out=np.full_like(level, np.nan), where=length > 0.05)
-    across = np.cross(up, level)
-    turns = _SIDE_TURNS + more
-    cos, sin = np.cos(turns)[None, :, None], np.sin(turns)[None, :, None]
-    approach = cos * level[:, None] + sin * across[:, None]
-    return _stack(np.broadcast_to(up, approach.shape), approach)
+@kernel
+def _from_the_side(level: Array, up: Array, cos: Array, sin: Array) -> Array:
+    """Approach along `level` (S, 3), closing level: an upright part; NaN where that is short."""
+    rotations = np.empty((len(level), len(cos), 3, 3))
+    x_axis = (up[0], up[1], up[2])
+    for s in range(len(level)):
+        x, y, z = level[s]
+        length = np.sqrt(x**2 + y**2 + z**2)
+        length = length if length > _LOOKS_DOWN else np.nan
+        ahead = (x / length, y / length, z / length)
+        aside = _cross(x_axis, ahead)
+        for k in range(len(cos)):
+            _write(rotations[s, k], x_axis, _turned(ahead, aside, cos[k], sin[k]))
+    return rotations
 
 
-def _stack(x_axis: Array, z_axis: Array) -> Array:
-    """Return rotations (S, K, 3, 3) from perpendicular unit axes (S, K, 3)."""
-    return np.stack([x_axis, np.cross(z_axis, x_axis), z_axis], axis=3)
+@kernel
+def _possible(rotations: Array, up: Array) -> Mask:
+    """Say which rotations (S, K, 3, 3) are known and not from below; NaN in them becomes 0."""
+    possible = np.ones(rotations.shape[:2], dtype=np.bool_)
+    for s in range(rotations.shape[0]):
+        for k in range(rotations.shape[1]):
+            rotation = rotations[s, k]
+            rise = rotation[0, 2] * up[0] + rotation[1, 2] * up[1] + rotation[2, 2] * up[2]
+            possible[s, k] = rise <= _STEEPEST_RISE
+            for i in range(3):
+                for j in range(3):
+                    if np.isnan(rotation[i, j]):
+                        possible[s, k] = False
+                        rotation[i, j] = 0.0
+    return possible
+
+
+@kernel
+def _write(rotation: Array, x_axis: Vector, z_axis: Vector) -> None:
+    """Write the rotation with these perpendicular unit axes."""
+    y_axis = _cross(z_axis, x_axis)
+    for i in range(3):
+        rotation[i, 0], rotation[i, 1], rotation[i, 2] = x_axis[i], y_axis[i], z_axis[i]
+
+
+@kernel
+def _turned(one: Vector, other: Vector, cos: float, sin: float) -> Vector:
+    """Return `one` turned towards `other`, which is perpendicular to it."""
+    return (
+        cos * one[0] + sin * other[0],
+        cos * one[1] + sin * other[1],
+        cos * one[2] + sin * other[2],
+    )
+
+
+@kernel
+def _flattened(vector: Vector, normal: Vector) -> Vector:
+    """Return `vector` without what it has along the unit vector `normal`."""
+    along = vector[0] * normal[0] + vector[1] * normal[1] + vector[2] * normal[2]
+    return (
+        vector[0] - normal[0] * along,
+        vector[1] - normal[1] * along,
+        vector[2] - normal[2] * along,
+    )
+
+
+@kernel
+def _cross(a: Vector, b: Vector) -> Vector:
+    return (
+        a[1] * b[2] - a[2] * b[1],
+        a[2] * b[0] - a[0] * b[2],
+        a[0] * b[1] - a[1] * b[0],
+    )
+
+
+@kernel
+def _unit(x: float, y: float, z: float) -> Vector:
+    """Return a vector of length 1, or zero; see `shared.geometry.rotation.unit`."""
+    largest = max(abs(x), abs(y), abs(z))
+    if largest == 0.0:
+        return (0.0, 0.0, 0.0)
+    x, y, z = x / largest, y / largest, z / largest
+    length = np.sqrt(x * x + y * y + z * z)
+    return (x / length, y / length, z / length)
