@@ -9,6 +9,7 @@ from numpy.typing import NDArray
 
 from services.grasp_proposal.contacts import Contacts
 from services.grasp_proposal.hand import Hand
+from shared.jit import kernel
 
 Array = NDArray[np.float64]
 
@@ -33,8 +34,30 @@ def finger_samples(
     ys = np.array(through) * hand.finger_thickness
     zs = -np.array(deep) * hand.finger_length
     grid = np.stack(np.meshgrid(xs, ys, zs, indexing="ij"), axis=-1).reshape(-1, 3)
-    centre = (placed.left + placed.right) / 2
-    local = np.broadcast_to(grid, (len(centre), *grid.shape)).copy()
-    local[:, :, 1] = centre[:, None] + sign * (contacts.opening[:, None] / 2 + grid[:, 1])
-    local[:, :, 2] += placed.tip[:, None]
-    return placed.origin[:, None] + np.einsum("gij,gkj->gki", placed.rotation, local), -grid[:, 2]
+    middle = (placed.left + placed.right) / 2
+    return _moved(
+        grid, placed.origin, placed.rotation, middle, contacts.opening, placed.tip, sign
+    ), -grid[:, 2]
+
+
+@kernel
+def _moved(
+    grid: Array,
+    origin: Array,
+    rotation: Array,
+    middle: Array,
+    opening: Array,
+    tip: Array,
+    sign: float,
+) -> Array:
+    """Return the points (K, 3) of a finger's grid in the workspace, for each of G hands."""
+    points = np.empty((len(origin), len(grid), 3))
+    for g in range(len(origin)):
+        for k in range(len(grid)):
+            x = grid[k, 0]
+            y = middle[g] + sign * (opening[g] / 2 + grid[k, 1])
+            z = grid[k, 2] + tip[g]
+            for i in range(3):  # x, z, y: the order in which NumPy's einsum adds
+                r = rotation[g, i]
+                points[g, k, i] = origin[g, i] + (r[0] * x + r[2] * z + r[1] * y)
+    return points

@@ -148,9 +148,7 @@ def _around(surface: Array, centre: Array, radius: float, around: Array) -> int:
 
 
 @kernel
-def _cut_slab(
-    around: Array, rotation: Array, half_slab: float, along: Array, inside: Bins
-) -> int:
+def _cut_slab(around: Array, rotation: Array, half_slab: float, along: Array, inside: Bins) -> int:
     """Write which of the points (3, N) lie in the hand's slab, and return how many do.
 
     `along` and `inside` are room for one number per point. Which points lie in the slab is

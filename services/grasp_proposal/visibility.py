@@ -10,12 +10,14 @@ from scipy.ndimage import minimum_filter
 from scipy.spatial import cKDTree
 
 from shared.geometry.rotation import frame_from_z
+from shared.jit import kernel
 
 Array = NDArray[np.float64]
 
 _MAX_CELLS = 512
 TOLERANCE = 0.004
 _PROBES = 500
+_LEAST_AHEAD = 1e-6
 
 
 @dataclass(frozen=True)
@@ -66,16 +68,20 @@ class SightMap:
 
         Zero where the sensor saw them free: in front of the surface or beside it.
         """
-        seen = (points - self.viewpoint) @ self.view_from_work.T
-        ahead = seen[..., 2] > 1e-6
-        flat = seen[..., :2] / np.where(ahead, seen[..., 2], 1.0)[..., None]
-        cells = np.floor((flat - self.corner) / self.cell)
-        rows, columns = self.nearest.shape
-        inside = ahead & (cells >= 0).all(axis=-1) & (cells < [columns, rows]).all(axis=-1)
-        u, v = (
-            np.where(inside[..., None], cells, 0)
-            .astype(np.int64)
-            .transpose(-1, *range(cells.ndim - 1))
-        )
-        behind = seen[..., 2] - self.nearest[v, u] - TOLERANCE
-        return np.where(inside & (behind > 0), behind, 0.0)
+        seen = (points - self.viewpoint).reshape(-1, 3) @ self.view_from_work.T
+        return _behind(seen, self.nearest, self.corner, self.cell).reshape(points.shape[:-1])
+
+
+@kernel
+def _behind(seen: Array, nearest: Array, corner: Array, cell: float) -> Array:
+    """Return how far points (N, 3) in the sensor's frame lie behind the map's surface."""
+    behind = np.zeros(len(seen))
+    rows, columns = nearest.shape
+    for n in range(len(seen)):
+        x, y, ahead = seen[n]
+        if not ahead > _LEAST_AHEAD:
+            continue
+        u, v = np.floor((x / ahead - corner[0]) / cell), np.floor((y / ahead - corner[1]) / cell)
+        if 0 <= u < columns and 0 <= v < rows:
+            behind[n] = max(ahead - nearest[int(v), int(u)] - TOLERANCE, 0.0)
+    return behind

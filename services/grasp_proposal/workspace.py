@@ -15,7 +15,7 @@ from shared.geometry.points import bounds, principal_axes
 from shared.geometry.rotation import frame_from_z, unit
 from shared.geometry.se3 import inverse, pose_matrix, transform_points
 from shared.schemas.grasp import ProposeRequest
-from shared.superquadric import Superquadric, surface_mesh, volume
+from shared.superquadric import Superquadric, surface_points, volume
 
 Array = NDArray[np.float64]
 Mask = NDArray[np.bool_]
@@ -82,7 +82,7 @@ class Workspace:
     @property
     def believed(self) -> Array:
         """Points (B, 3) on the surfaces of the bodies, seen or not."""
-        surfaces = [surface_mesh(body, *_MESH)[0] for body in self.bodies]
+        surfaces = [surface_points(body, *_MESH) for body in self.bodies]
         points = np.vstack([np.empty((0, 3)), *surfaces])
         return np.asarray(transform_points(inverse(self.outer_from_work), points).round(_DIGITS))
 

@@ -2,6 +2,8 @@
 
 from __future__ import annotations
 
+from functools import cache
+
 import numpy as np
 from numpy.typing import NDArray
 from scipy.special import beta
@@ -37,17 +39,29 @@ def surface_mesh(
     vertices : (rings * segments + 2, 3) array, metres
     faces : (2 * rings * segments, 3) int32 array, counter-clockwise from outside
     """
-    latitude = np.linspace(-np.pi / 2, np.pi / 2, rings + 2)[1:-1]
-    longitude = np.arange(segments) * (2 * np.pi / segments)
-    lat, lon = (grid.ravel() for grid in np.meshgrid(latitude, longitude, indexing="ij"))
-    ball = np.column_stack([np.cos(lat) * np.cos(lon), np.cos(lat) * np.sin(lon), np.sin(lat)])
-    ball = np.vstack([[0, 0, -1], ball, [0, 0, 1]])
+    return surface_points(superquadric, rings, segments), _sphere_faces(rings, segments)
+
+
+def surface_points(superquadric: Superquadric, rings: int, segments: int) -> Array:
+    """Return the vertices of `surface_mesh`."""
+    ball = _directions(rings, segments)
     e1, e2 = superquadric.exponents
     with np.errstate(over="ignore"):
         flat = (np.abs(ball[:, 0]) ** (2 / e2) + np.abs(ball[:, 1]) ** (2 / e2)) ** (e2 / e1)
         reach = (flat + np.abs(ball[:, 2]) ** (2 / e1)) ** (-e1 / 2)
-    local = ball * reach[:, None] * np.asarray(superquadric.semi_axes)
-    return superquadric.to_outer(local), _sphere_faces(rings, segments)
+    return superquadric.to_outer(ball * reach[:, None] * np.asarray(superquadric.semi_axes))
+
+
+@cache
+def _directions(rings: int, segments: int) -> Array:
+    """Return unit vectors (rings * segments + 2, 3), read-only: the poles are first and last."""
+    latitude = np.linspace(-np.pi / 2, np.pi / 2, rings + 2)[1:-1]
+    longitude = np.arange(segments) * (2 * np.pi / segments)
+    lat, lon = (grid.ravel() for grid in np.meshgrid(latitude, longitude, indexing="ij"))
+    ball = np.column_stack([np.cos(lat) * np.cos(lon), np.cos(lat) * np.sin(lon), np.sin(lat)])
+    directions = np.vstack([[0, 0, -1], ball, [0, 0, 1]])
+    directions.flags.writeable = False
+    return directions
 
 
 def _sphere_faces(rings: int, segments: int) -> NDArray[np.int32]:
