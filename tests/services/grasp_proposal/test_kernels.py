@@ -4,6 +4,7 @@ from __future__ import annotations
 
 import subprocess
 import sys
+from ast import literal_eval
 
 import numpy as np
 import pytest
@@ -107,6 +108,24 @@ def place(surface: Array, tips: list[float], tried: list[bool] | None = None):  
     )
 
 
+def test_hands_placed_together_are_placed_as_alone(rng: np.random.Generator) -> None:
+    surface, samples = bar(0.03), np.array([[0.0, 0.0, 0.0], [0.01, 0.005, 0.0]])
+    turns = Rotation.from_euler("x", [0.0, 0.2, 0.2, -0.3])  # about one axis: one slab
+    rotations = np.concatenate([turns.as_matrix(), Rotation.random(4, random_state=3).as_matrix()])
+    of_sample = np.array([0, 0, 0, 1, 1, 1, 1, 1])
+    tips, tried = np.tile([0.005, 0.02], (8, 1)), rng.random((8, 2)) < 0.6
+    tried[:2], tried[4] = True, False
+    together = place_hands(surface, samples, of_sample, rotations, tips, tried, REACH)
+    for h in range(8):
+        one = slice(h, h + 1)
+        alone = place_hands(
+            surface, samples, of_sample[one], rotations[one], tips[one], tried[one], REACH
+        )
+        for expected, found in zip(alone, together, strict=True):
+            np.testing.assert_array_equal(found[one], expected)
+    assert (together.depth >= 0).any()
+
+
 @pytest.mark.parametrize("width", [0.01, 0.03, 0.06])
 def test_a_hand_is_placed_around_a_bar(width: float) -> None:
     found = place(bar(width), [0.005, 0.020])
@@ -190,23 +209,20 @@ def test_a_closer_look(rng: np.random.Generator) -> None:
 def test_warming_up_compiles_every_kernel_and_requests_none() -> None:
     """One combination of types each, or processes could overwrite each other's cache entries."""
     program = """
-from services.grasp_proposal import (
-    boxes, closer_look, diversity, eigen, neighbourhood, placing, seal)
 from services.grasp_proposal.proposer import GraspProposer
 from services.grasp_proposal.settings import GraspProposalSettings
+from shared.jit import types_compiled
 from tests.services.grasp_proposal.scenes import box
 
-kernels = (boxes.any_inside, closer_look.look_closer, diversity._distinct, placing.place_hands,
-           eigen.principal_frames, neighbourhood.scatter_of_groups, neighbourhood.scatter_within,
-           seal.seal)
 proposer = GraspProposer(GraspProposalSettings())
 proposer.warm_up()
-print([len(kernel.signatures) for kernel in kernels])
+warm = types_compiled()
+print(warm)
 scene = box((0.05, 0.06, 0.18), turn=0.2)
 for change in ({}, {"plane": None}, {"plane": None, "up": None}, {"obstacle_points": None},
                {"gripper": "onrobot_vgc10"}):
     proposer.propose(scene.request(samples=10, **change))
-print([len(kernel.signatures) for kernel in kernels])
+print({name: count for name, count in types_compiled().items() if count != warm[name]})
 """
     run = subprocess.run(
         [sys.executable, "-c", program],
@@ -215,4 +231,6 @@ print([len(kernel.signatures) for kernel in kernels])
         capture_output=True,
         text=True,
     )
-    assert run.stdout.split("\n")[:2] == [str([1] * 8)] * 2
+    warm, later = map(literal_eval, run.stdout.splitlines())
+    assert max(warm.values()) == 1, warm
+    assert later == {}

@@ -5,7 +5,7 @@ import pytest
 from numpy.typing import NDArray
 
 from services.grasp_proposal.thinning import thin
-from services.grasp_proposal.workspace import build_workspace
+from services.grasp_proposal.workspace import _by_height, build_workspace
 from shared.errors import EmptyCloud, InvalidInput
 from shared.geometry.rotation import quaternion_from_matrix
 from shared.geometry.se3 import pose_matrix, transform_points
@@ -117,6 +117,21 @@ def test_thinning_bounds_the_count_at_any_scale(scale: float) -> None:
     kept = thin(points, (0.003, 0.004), 1500)
     assert 1 <= len(kept) <= 20_000
     assert (np.diff(kept) > 0).all()
+
+
+def test_thinning_keeps_the_first_point_of_each_voxel() -> None:
+    points = np.random.default_rng(1).normal(0, 0.02, (5000, 3))
+    cells = np.floor((points - points.min(axis=0)) / 0.01)
+    first = np.sort(np.unique(cells, axis=0, return_index=True)[1])
+    np.testing.assert_array_equal(thin(points, (0.01,), 0), first)
+
+
+def test_the_order_of_equally_high_points_is_that_of_all_their_coordinates() -> None:
+    rng = np.random.default_rng(2)
+    points, focus = rng.integers(0, 4, (300, 3)) * 0.01, rng.random(300) < 0.5
+    found, expected = _by_height(points, focus), np.lexsort((focus, *points.T))
+    np.testing.assert_array_equal(points[found], points[expected])
+    np.testing.assert_array_equal(focus[found], focus[expected])
 
 
 def test_thinning_leaves_a_point_near_every_point() -> None:
