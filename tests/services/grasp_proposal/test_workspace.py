@@ -128,7 +128,7 @@ def test_thinning_keeps_the_first_point_of_each_voxel() -> None:
 
 def test_the_order_of_equally_high_points_is_that_of_all_their_coordinates() -> None:
     rng = np.random.default_rng(2)
-    points, focus = rng.integers(0, 4, (300, 3)) * 0.01, rng.random(300) < 0.5
+    points, focus = np.round(rng.uniform(0, 0.04, (300, 3)), 2), rng.random(300) < 0.5
     found, expected = _by_height(points, focus), np.lexsort((focus, *points.T))
     np.testing.assert_array_equal(points[found], points[expected])
     np.testing.assert_array_equal(focus[found], focus[expected])
