@@ -50,7 +50,8 @@ class SightMap:
         seen = (points - viewpoint) @ view_from_work.T
         flat = seen[:, :2] / seen[:, 2:]
         some = flat[:: max(1, len(flat) // _PROBES)]
-        spacing = np.asarray(cKDTree(flat).query(some, k=2)[0])
+        tree = cKDTree(flat, compact_nodes=False, balanced_tree=False)  # built faster
+        spacing = np.asarray(tree.query(some, k=2)[0])
         low, high = flat.min(axis=0), flat.max(axis=0)
         cell = max(
             2 * float(np.median(spacing[:, 1])), float((high - low).max()) / _MAX_CELLS, 1e-9
