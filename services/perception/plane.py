@@ -112,7 +112,7 @@ def refine(plane: Plane, points: Array, settings: PerceptionSettings) -> Plane:
     few points, the last one on at most 60,000 or so.
     """
     reach = 2 * settings.plane_tolerance_m
-    few = points[:: max(1, len(points) // _FEW)]
+    few = points.take(np.arange(0, len(points), max(1, len(points) // _FEW)), axis=0)
     few = few.compress(np.abs(plane.heights(few)) < reach, axis=0)
     if len(few) < 3:
         return plane

@@ -9,6 +9,7 @@ from typing import Any
 import numpy as np
 from numpy.typing import NDArray
 
+from services.perception.median import median
 from services.perception.noise import SIGMA_PER_MEDIAN, NoiseProfile
 from services.perception.pixels import distances, heights_above
 from services.perception.plane import SAMPLE, Plane
@@ -144,7 +145,7 @@ def _certain_patches(
     seen = seen[counts[seen] > 0]
     scatter = 1.0
     if len(seen):
-        scatter = max(1.0, SIGMA_PER_MEDIAN * float(np.median(np.abs(significance(seen)))))
+        scatter = max(1.0, SIGMA_PER_MEDIAN * median(np.abs(significance(seen))))
     high = np.flatnonzero(means > settings.grow_height_m)
     clear = significance(high) / scatter
     certain = (means[high] > settings.seed_height_m) & (clear > settings.seed_sigmas)

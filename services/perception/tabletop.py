@@ -61,7 +61,8 @@ def lay_out(
     """Return the view divided by `plane`, refined, given the `others` that were found."""
     points = view.points
     plane = refine(plane, points, settings)
-    sample = np.ascontiguousarray(points[:: max(1, len(points) // SAMPLE)])
+    step = max(1, len(points) // SAMPLE)
+    sample = points.take(np.arange(0, len(points), step), axis=0)
     heights = heights_above(sample, np.ascontiguousarray(plane.normal), plane.offset)
     near = np.abs(heights) < 2 * settings.plane_tolerance_m
     heights, ranges = heights[near], distances(sample, view.viewpoint)[near]
