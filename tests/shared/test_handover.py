@@ -7,7 +7,7 @@ import contextlib
 import re
 import threading
 import time
-from collections.abc import AsyncIterator, Callable
+from collections.abc import AsyncIterator, Callable, Iterator
 from typing import Any
 
 import httpx
@@ -28,6 +28,14 @@ REQUEST = SelectRequest(
 )
 Handler = Callable[[SelectRequest], SelectResponse]
 Reach = Callable[[FastAPI], contextlib.AbstractAsyncContextManager[Stage]]
+
+
+@pytest.fixture
+def robot_7() -> Iterator[None]:
+    """Have a request id while the test runs."""
+    token = request_id.set("robot-7")
+    yield
+    request_id.reset(token)
 
 
 def echo(request: SelectRequest) -> SelectResponse:
@@ -131,6 +139,7 @@ def test_what_is_handed_over_cannot_be_changed() -> None:
     assert not answer.grasps.flags.writeable
 
 
+@pytest.mark.usefixtures("robot_7")
 def test_the_handler_knows_the_request_and_its_deadline() -> None:
     seen: list[Any] = []
 
@@ -138,7 +147,6 @@ def test_the_handler_knows_the_request_and_its_deadline() -> None:
         seen.append((threading.current_thread().name, remaining_s(), request_id.get()))
         return echo(request)
 
-    request_id.set("robot-7")
     call(app_of(look), timeout_s=3.0)
     ((thread, left_s, identifier),) = seen
     assert thread != threading.main_thread().name
@@ -162,6 +170,7 @@ def test_work_ends_soon_after_its_deadline() -> None:
     assert ended.wait(2.0)
 
 
+@pytest.mark.usefixtures("robot_7")
 def test_a_handover_is_two_spans_of_one_trace() -> None:
     with traced() as collector:
         app = app_of(refusing)
@@ -176,7 +185,6 @@ def test_a_handover_is_two_spans_of_one_trace() -> None:
                 with pytest.raises(UnknownTask):
                     await stage.call(SELECT, REQUEST, 5.0)
 
-        request_id.set("robot-7")
         asyncio.run(ask())
     by_kind = {each.kind: each for each in collector.spans}
     asked, answered = by_kind[CLIENT], by_kind[SERVER]
