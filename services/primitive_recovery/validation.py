@@ -5,6 +5,7 @@ from __future__ import annotations
 import numpy as np
 from numpy.typing import NDArray
 
+from services.primitive_recovery.points import about_mean, second_moments
 from shared.errors import DegenerateCloud, EmptyCloud, InvalidInput, PayloadTooLarge, WrongUnits
 from shared.geometry.points import bounds
 from shared.schemas.fields import FARTHEST_M
@@ -43,9 +44,9 @@ def checked_cloud(points: Array, max_points: int) -> Array:
             found=len(points),
             allowed=f"<= {max_points}",
         )
-    finite = np.isfinite(points).all(axis=1)
+    finite = np.isfinite(points)
     if not finite.all():
-        bad = int((~finite).sum())
+        bad = int((~finite.all(axis=1)).sum())
         raise InvalidInput(
             f"points: {bad} of {len(points)} rows are NaN or infinite; leave them out.",
             field="points",
@@ -53,6 +54,7 @@ def checked_cloud(points: Array, max_points: int) -> Array:
             allowed=0,
         )
     _check_size(points)
+    points = np.array(points, dtype=np.float64, order="C")
     flat = flatness(points)
     if flat is not None:
         raise DegenerateCloud(
@@ -60,7 +62,7 @@ def checked_cloud(points: Array, max_points: int) -> Array:
             field="points",
             found=flat,
         )
-    return np.array(points, dtype=np.float64, order="C")
+    return points
 
 
 def checked_obstacles(points: Array | None, max_points: int) -> Array | None:
@@ -100,12 +102,12 @@ def checked_obstacles(points: Array | None, max_points: int) -> Array | None:
 
 def flatness(points: Array) -> str | None:
     """Return what finite points (N, 3) all lie on, "a spot", "a line" or "a plane", or None."""
-    centred = points - points.mean(axis=0)
+    _, centred = about_mean(points)
     size = float(np.abs(centred).max())
     if size < _SMALLEST_OBJECT:
         return "a spot"
     centred = centred / size
-    covariance = np.einsum("ni,nj->ij", centred, centred) / len(points)
+    covariance = second_moments(centred) / len(points)
     spread = np.sqrt(np.linalg.eigvalsh(covariance).clip(min=0.0))
     if spread[1] < _FLAT * spread[2]:
         return "a line"

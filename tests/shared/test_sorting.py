@@ -5,7 +5,7 @@ import pytest
 from hypothesis import given, settings
 from hypothesis import strategies as st
 
-from shared.sorting import ascending, ascending_order, middle
+from shared.sorting import ascending, ascending_order, middle, selected, trimmed_range
 
 NUMBERS = st.lists(st.floats(-1e6, 1e6) | st.just(float("inf")), min_size=1, max_size=60)
 
@@ -32,3 +32,20 @@ def test_longer_ones_and_the_argument_stays(count: int) -> None:
 def test_nothing_sorts_to_nothing() -> None:
     assert ascending(np.empty(0)).shape == (0,)
     assert ascending_order(np.empty(0)).shape == (0,)
+
+
+@pytest.mark.parametrize("count", [1, 2, 17, 300])
+def test_ranks_and_ranges_are_those_of_the_sorted_values(count: int) -> None:
+    values = np.random.default_rng(count).normal(size=count).round(1)
+    ordered = np.sort(values)
+    for rank in range(0, count, 7):
+        held = values.copy()
+        assert selected(held, rank) == held[rank] == ordered[rank]
+        assert (held[:rank] <= held[rank]).all()
+        assert trimmed_range(values, rank) == (ordered[rank], ordered[count - 1 - rank])
+
+
+@pytest.mark.parametrize("step", [1, -1])
+def test_sorted_values_stay_sorted(step: int) -> None:
+    values = np.arange(2000.0)
+    np.testing.assert_array_equal(ascending(values[::step].copy()), values)

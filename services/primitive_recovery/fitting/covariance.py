@@ -12,6 +12,9 @@ INFLATION = 2.0
 LEAST = 0.05
 """Of a semi-axis, as a share of it: what is left when nothing is unseen."""
 
+_ORDER = [0, 1, 2, 3, 4, 8, 9, 10, 5, 6, 7]
+_REORDERED = np.ix_(_ORDER, _ORDER)
+
 
 def covariance_of(matrix: Array, axes: Array, scale: float, signs: Array) -> Array:
     """Return the covariance (11, 11) in the order and the units of `PartFit`.
@@ -36,6 +39,5 @@ def covariance_of(matrix: Array, axes: Array, scale: float, signs: Array) -> Arr
     inverse = np.linalg.inv(matrix + 1e-9 * np.trace(matrix) / 11 * np.eye(11))
     covariance = INFLATION**2 * inverse * np.outer(units, units)
     covariance[2:5, 2:5] += np.diag((LEAST * axes) ** 2)
-    order = [0, 1, 2, 3, 4, 8, 9, 10, 5, 6, 7]
-    covariance = covariance[np.ix_(order, order)]
+    covariance = covariance[_REORDERED]
     return np.asarray((covariance + covariance.T) / 2)

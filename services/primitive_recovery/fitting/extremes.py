@@ -81,7 +81,7 @@ def nearer_beside(ends: Array, depth: Array, flat: Array, ahead: Array, beside: 
     ends, depth : (K, 2), (K,) arrays
         Ends in the image and how far ahead they are.
     flat, ahead : (m, 2), (m,) arrays
-        The same of everything else.
+        The same of everything else; what is not ahead of the sensor is left out.
     beside : float
         Reach in the image.
 
@@ -97,7 +97,7 @@ def nearer_beside(ends: Array, depth: Array, flat: Array, ahead: Array, beside: 
         low[j], high[j] = np.min(ends[:, j]) - beside, np.max(ends[:, j]) + beside
     for n in range(flat.shape[0]):
         u, v = flat[n, 0], flat[n, 1]
-        if u < low[0] or u > high[0] or v < low[1] or v > high[1]:
+        if ahead[n] <= 0.0 or u < low[0] or u > high[0] or v < low[1] or v > high[1]:
             continue
         for k in range(count):
             if abs(u - ends[k, 0]) < beside and abs(v - ends[k, 1]) < beside:

@@ -7,6 +7,8 @@ from numpy.typing import NDArray
 
 from services.primitive_recovery.fitting.extremes import nearer_beside
 from services.primitive_recovery.fitting.outline import Outline
+from services.primitive_recovery.points import over_depth
+from shared.sorting import middle
 
 Array = NDArray[np.float64]
 
@@ -22,14 +24,8 @@ def hidden_ends(
     """Return (K,) whether what is just beside each of a part's ends (K, 3) is in front of it."""
     if others is None or outline.frame is None:
         return np.zeros(len(ends), dtype=bool)
-    own, other = ((points - viewpoint) @ outline.frame for points in (ends, others))
-    other = other[other[:, 2] > 0]
-    distance = float(np.median(own[:, 2]))
-    nearer = nearer_beside(
-        np.ascontiguousarray(own[:, :2] / own[:, 2:]),
-        np.ascontiguousarray(own[:, 2]),
-        np.ascontiguousarray(other[:, :2] / other[:, 2:]),
-        np.ascontiguousarray(other[:, 2]),
-        BESIDE * outline.spacing / distance,
-    )
+    places, depth = over_depth((ends - viewpoint) @ outline.frame)
+    flat, ahead = over_depth((others - viewpoint) @ outline.frame)
+    beside = BESIDE * outline.spacing / middle(depth)
+    nearer = nearer_beside(places, depth, flat, ahead, beside)
     return np.asarray(nearer > max(STEP * outline.width, 3 * outline.spacing))

@@ -12,6 +12,7 @@ from services.primitive_recovery.fitting.extremes import (
     frame_about,
     nearest_spacing,
 )
+from services.primitive_recovery.points import about_mean, corners, over_depth, unit_rows
 
 Array = NDArray[np.float64]
 
@@ -20,6 +21,8 @@ WIDEST = 1.2
 """Tangent of half the angle that an outline may fill; a sensor amid the points sees none."""
 
 _PROBES = 48
+_ANGLES = np.arange(DIRECTIONS) * (2 * np.pi / DIRECTIONS)
+_AROUND = np.column_stack([np.cos(_ANGLES), np.sin(_ANGLES)])
 
 
 @dataclass(frozen=True)
@@ -53,33 +56,27 @@ def rim(points: Array, viewpoint: Array) -> Outline:
     Depth noise moves points along their rays and leaves the outline as it is. The centre
     of the outermost pixel is half a pixel inside of the true outline.
     """
-    middle = (points.min(axis=0) + points.max(axis=0)) / 2
-    ahead = middle - viewpoint
+    low, high = corners(points)
+    ahead = (low + high) / 2 - viewpoint
     distance = float(np.linalg.norm(ahead))
     if distance == 0:
         return _amid(points)
     hint = np.zeros(3)
     hint[np.argmin(np.abs(ahead))] = 1.0
     frame = frame_about(ahead / distance, hint)
-    local = (points - viewpoint) @ frame
-    if not bool((local[:, 2] > 0).all()):
+    flat, depth = over_depth((points - viewpoint) @ frame)
+    if not depth.min() > 0 or float(np.abs(flat).max()) > WIDEST:
         return _amid(points)
-    flat = np.ascontiguousarray(local[:, :2] / local[:, 2:])
-    if float(np.abs(flat).max()) > WIDEST:
-        return _amid(points)
-    centred = flat - flat.mean(axis=0)
+    _, centred = about_mean(flat)
     variances, axes = np.linalg.eigh(centred.T @ centred / len(flat))
     variances = np.maximum(variances, max(1e-6 * variances[1], 1e-18))
     spacing = nearest_spacing(flat, _PROBES)
-    angle = np.arange(DIRECTIONS) * (2 * np.pi / DIRECTIONS)
     # Evenly around the outline when it is made as wide as long.
-    outward = (np.column_stack([np.cos(angle), np.sin(angle)]) / np.sqrt(variances)) @ axes.T
-    outward = np.ascontiguousarray(outward / np.sqrt((outward**2).sum(axis=1))[:, None])
-    high, _, _ = extremes(flat, outward)
-    normals = np.column_stack([outward, -(high + 0.5 * spacing)]) @ frame.T
-    normals /= np.sqrt((normals**2).sum(axis=1))[:, None]
-    across = centred @ axes
-    width = float((across.max(axis=0) - across.min(axis=0)).min())
+    outward = unit_rows((_AROUND / np.sqrt(variances)) @ axes.T)
+    farthest, _, _ = extremes(flat, outward)
+    normals = unit_rows(np.column_stack([outward, -(farthest + 0.5 * spacing)]) @ frame.T)
+    low, high = corners(centred @ axes)
+    width = float((high - low).min())
     width = max(width, spacing) * distance
     return Outline(normals, normals @ viewpoint, spacing * distance, width, frame)
 

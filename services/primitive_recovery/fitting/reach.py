@@ -12,6 +12,7 @@ from services.primitive_recovery.fitting.extremes import extremes, rivals
 from services.primitive_recovery.fitting.occlusion import hidden_ends
 from services.primitive_recovery.fitting.outline import Outline, rim
 from services.primitive_recovery.fitting.terms import AT_LEAST, EQUAL
+from services.primitive_recovery.points import unit_rows
 from shared.geometry.points import principal_axes
 
 Array = NDArray[np.float64]
@@ -79,8 +80,7 @@ def visible_reach(
     edge = rim(points, viewpoint)
     variances, axes = principal_axes(points)
     spread = np.sqrt(np.maximum(variances, THIN**2 * variances[0]))
-    cube = (_CUBE / spread) @ axes.T  # evenly over the cloud when it is made round
-    cube /= np.linalg.norm(cube, axis=1, keepdims=True)
+    cube = unit_rows((_CUBE / spread) @ axes.T)  # evenly over the cloud when it is made round
     columns = np.swapaxes(frames, 1, 2)
     half_axes = np.concatenate([columns, -columns], axis=1).reshape(-1, 3)
     normals = np.concatenate([edge.normals, cube, half_axes])

@@ -59,7 +59,9 @@ def joints_of(
         own = low * count + high == key
         border = np.union1d(here[own], there[own])
         if len(border) >= _FEWEST:
-            middle = points[np.isin(of_point, border)].mean(axis=0)
+            on_border = np.zeros(height * width, dtype=bool)
+            on_border[border] = True
+            middle = points[on_border[of_point]].mean(axis=0)
             found.append(PartJoint((int(key // count), int(key % count)), middle))
     for part_alone in range(count):
         if not any(part_alone in joint.parts for joint in found):

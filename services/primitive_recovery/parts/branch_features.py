@@ -7,7 +7,7 @@ from numpy.typing import NDArray
 
 from services.primitive_recovery.parts.grid import (
     branch_sums,
-    distance_to_unset,
+    distances_at,
     solidity,
 )
 from shared.jit import kernel
@@ -22,6 +22,7 @@ _SMALLEST = 0.08
 """Variance of a cell's own extent, about, in cells squared."""
 
 
+@kernel
 def branch_features(
     mask: Mask,
     cells: Mask,
@@ -53,7 +54,7 @@ def branch_features(
     """
     rest = mask & ~cells
     sums, touched = branch_sums(cells, rest, holes, len(hole_sizes) - 1, near, tall)
-    away = distance_to_unset(~rest)
+    away = distances_at(cells, ~rest)
     solid = np.array([solidity(rest), solidity(cells)])
     return branch_row(mask, cells, distance, away, hole_sizes, sums, touched, solid)
 

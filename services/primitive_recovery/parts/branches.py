@@ -2,18 +2,21 @@
 
 from __future__ import annotations
 
+from collections.abc import Iterator
 from dataclasses import dataclass
 
 import numpy as np
 from numpy.typing import NDArray
-from scipy import ndimage
 
 from services.primitive_recovery.parts.branch_features import ENCLOSES, branch_features
+from services.primitive_recovery.parts.components import labelled, much_the_same
+from services.primitive_recovery.parts.discs import opened, without_slivers
 from services.primitive_recovery.parts.grid import (
     cell_means,
     distance_to_unset,
     grown,
     solidity,
+    unevenness,
 )
 from services.primitive_recovery.parts.openings import holes_of
 from services.primitive_recovery.parts.ridges import standing_out
@@ -37,13 +40,8 @@ WINDOWS = (0.4,)
 STEP = 0.22
 """How far it must, in radii of that disc."""
 
-TRIES = (
-    *(("closed", share) for share in RADII),
-    *(("raw", share) for share in RAW),
-    *(("depth", share) for share in WINDOWS),
-)
-PIECE_TRIES = (("closed", 0.45), ("closed", 0.75))
-"""Of a part that was cut from an object already, where little sticks out."""
+PIECE_RADII = (0.45, 0.75)
+"""RADII of a part that was cut from an object already, where little sticks out."""
 
 BESIDE = 0.7
 """Of RADII, the one that finds the rest of it, beside the body."""
@@ -54,7 +52,11 @@ CONVEX = 0.96
 MOST = 2
 """Branches looked at per radius, largest first."""
 
-_ROUND = np.ones((3, 3), dtype=bool)
+SEAM = 1
+"""Cells along the body that discs leave of its rim."""
+
+SAME = 0.97
+"""Share of the cells of two branches that both have, if they are one."""
 
 
 @dataclass(frozen=True)
@@ -98,33 +100,19 @@ def branches(view: PartView) -> list[Branch]:
     near = cell_means(mask, picture.row, picture.column, view.nearness / metres)
     tall = cell_means(mask, picture.row, picture.column, view.height / metres)
     holes = holes_of(mask, view.hidden.mask)
-    seen: list[Mask] = []
-    noise = _unevenness(near, mask)
-    raw = distance_to_unset(picture.mask)
     hole_sizes = np.bincount(holes.ravel())
-    tries = PIECE_TRIES if view.is_piece else TRIES
-    for kind, share in tries:
-        if kind == "depth":
-            least = max(STEP * widest / size, 5 * noise)
-            left = standing_out(near, mask, max(round(share * widest), 2), least) > least
-            left = mask & (left | ~_opened(distance, BESIDE * widest))
-        elif kind == "raw":
-            left = mask & ~_opened(raw, share * float(raw.max()))
-        else:
-            left = mask & ~_opened(distance, share * widest)
-        rest, count = ndimage.label(_without_slivers(left, mask), structure=_ROUND)
-        if count == 0:
-            continue
-        sizes = np.bincount(rest.ravel(), minlength=count + 1)[1:]
-        for index in np.argsort(-sizes, kind="stable")[:MOST]:
-            if sizes[index] < LEAST_SHARE * area:
+    seen: list[Mask] = []
+    for kind, share, left in _left_over(view, mask, distance, near):
+        numbers, sizes = labelled(without_slivers(left, mask, SEAM))
+        for number in 1 + np.argsort(-sizes[1:], kind="stable")[:MOST]:
+            if sizes[number] < LEAST_SHARE * area:
                 break
-            cells = np.asarray(rest == index + 1)
-            if 2 * sizes[index] > area:
+            cells = np.asarray(numbers == number)
+            if 2 * sizes[number] > area:
                 cells = mask & ~cells
                 if cells.sum() < LEAST_SHARE * area:
                     continue
-            if any((cells & other).sum() > 0.97 * (cells | other).sum() for other in seen):
+            if any(much_the_same(cells, other, SAME) for other in seen):
                 continue
             seen.append(cells)
             row = branch_features(mask, cells, distance, holes, hole_sizes, near, tall)
@@ -135,25 +123,21 @@ def branches(view: PartView) -> list[Branch]:
     return found
 
 
-def _opened(distance: Array, radius: float) -> Mask:
-    """Return the body: what discs of this radius cover, those linked to the largest."""
-    core, count = ndimage.label(distance > radius, structure=_ROUND)
-    if count > 1:
-        sizes = np.bincount(core.ravel())
-        sizes[0] = 0
-        core = core == int(sizes.argmax())
-    return np.asarray(distance_to_unset(core == 0) <= radius + 0.5)
-
-
-def _without_slivers(left: Mask, mask: Mask) -> Mask:
-    """Return the cells left over without the seams, one cell wide, along the body."""
-    body = mask & ~left
-    core = left & ~grown(body, 1)
-    return np.asarray(left & grown(core, 2))
-
-
-def _unevenness(near: Array, mask: Mask) -> float:
-    """Return how far neighbours differ beyond a slope: the sensor's noise, per cell."""
-    second = near[:, 2:] - 2 * near[:, 1:-1] + near[:, :-2]
-    inside = mask[:, 2:] & mask[:, 1:-1] & mask[:, :-2]
-    return float(np.median(np.abs(second[inside])) / 1.65) if inside.any() else 0.0
+def _left_over(
+    view: PartView, mask: Mask, distance: Array, near: Array
+) -> Iterator[tuple[str, float, Mask]]:
+    """Yield each kind of body with its share, and the cells (H, W) of the object beside it."""
+    widest = float(distance.max())
+    for share in PIECE_RADII if view.is_piece else RADII:
+        yield "closed", share, mask & ~opened(distance, share * widest)
+    if view.is_piece:
+        return
+    raw = distance_to_unset(view.picture.mask)
+    for share in RAW:
+        yield "raw", share, mask & ~opened(raw, share * float(raw.max()))
+    size = float(np.sqrt(mask.sum()))
+    least = max(STEP * widest / size, 5 * unevenness(near, mask))
+    beside = ~opened(distance, BESIDE * widest)
+    for share in WINDOWS:
+        out = standing_out(near, mask, max(round(share * widest), 2), least) > least
+        yield "depth", share, mask & (out | beside)

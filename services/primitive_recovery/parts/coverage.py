@@ -2,10 +2,13 @@
 
 from __future__ import annotations
 
+from typing import NamedTuple
+
 import numpy as np
 from numpy.typing import NDArray
 
 from services.primitive_recovery.parts.profile import SLICES
+from shared.jit import kernel
 
 Array = NDArray[np.float64]
 
@@ -27,7 +30,23 @@ _SHAPES = _shapes()
 _AREAS = np.where(np.isfinite(_SHAPES), _SHAPES, 0.0).sum(axis=2)
 
 
-def coverage(width: Array) -> tuple[Array, Array, float]:
+class Coverage(NamedTuple):
+    """Background that parts on either side of a cut cover, as shares of the object's area.
+
+    Attributes
+    ----------
+    lower, upper : (SLICES + 1,) array
+        By the slices before k, and from k on.
+    whole : float
+        By all of them.
+    """
+
+    lower: Array
+    upper: Array
+    whole: float
+
+
+def coverage(width: Array) -> Coverage:
     """Return the covered background of the lower parts, the upper parts and the whole.
 
     The smallest superellipse about a part that spans its slices and holds all
@@ -38,21 +57,34 @@ def coverage(width: Array) -> tuple[Array, Array, float]:
     ----------
     width : (SLICES,) array
         Of the slices.
-
-    Returns
-    -------
-    lower, upper : (SLICES + 1,) array
-        Of the slices before k, and from k on.
-    whole : float
-        Of all of them.
     """
-    lower = _excess(width)
-    upper = _excess(width[::-1])[::-1]
-    return lower, upper, float(lower[-1])
+    lower = excess(width, _SHAPES, _AREAS)
+    upper = np.ascontiguousarray(excess(width[::-1].copy(), _SHAPES, _AREAS)[::-1])
+    return Coverage(lower, upper, float(lower[-1]))
 
 
-def _excess(width: Array) -> Array:
-    scale = (width / _SHAPES).max(axis=2)
-    area = (scale * _AREAS).min(axis=0)
-    own = np.concatenate([[0.0], np.cumsum(width)])
-    return np.asarray((area - own) / own[-1])
+@kernel
+def excess(width: Array, shapes: Array, areas: Array) -> Array:
+    """Return the background (S + 1,) that the smallest superellipses about the first slices cover.
+
+    Parameters
+    ----------
+    width : (S,) array
+        Of the slices.
+    shapes : (P, S + 1, S) array
+        Relative widths of slice i of a superellipse of m slices, for each shape.
+    areas : (P, S + 1) array
+        Their sums.
+    """
+    covered = np.zeros(len(width) + 1)
+    own = 0.0
+    for m in range(1, len(width) + 1):
+        own += width[m - 1]
+        least = np.inf
+        for p in range(len(shapes)):
+            scale = 0.0
+            for i in range(m):
+                scale = max(scale, width[i] / shapes[p, m, i])
+            least = min(least, scale * areas[p, m])
+        covered[m] = least - own
+    return covered / own

@@ -59,10 +59,11 @@ class Cutter:
             slices = profile(
                 view.centred, axis, view.ray, view.height, view.spacing, view.hidden.behind
             )
-            quality = self.slices(np.vstack(slice_features(slices, view)))
+            lower, upper, whole = covered = coverage(slices.width)
+            features = slice_features(slices, view, covered)
+            quality = self.slices(features.reshape(-1, features.shape[-1]))
             quality = quality.reshape(2, -1).mean(axis=0)
             if quality.max() > best:
-                lower, upper, whole = coverage(slices.width)
                 saved = COVERAGE_WEIGHT * (whole - lower[CUTS] - upper[CUTS])
                 k = int((quality + saved).argmax())
                 side, best = slices.place >= CUTS[k], float(quality.max())

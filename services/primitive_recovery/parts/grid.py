@@ -6,6 +6,7 @@ import numpy as np
 from numpy.typing import NDArray
 
 from shared.jit import kernel
+from shared.sorting import middle
 
 Array = NDArray[np.float64]
 Mask = NDArray[np.bool_]
@@ -15,9 +16,17 @@ Mask = NDArray[np.bool_]
 def distance_to_unset(mask: Mask) -> Array:
     """Return every cell's distance (H, W) to the nearest unset one, in cells.
 
-    Nothing lies beyond the picture; where no cell is unset, all are far. Felzenszwalb
-    and Huttenlocher: Distance Transforms of Sampled Functions, 2012: exact, in time
-    linear in the cells.
+    Nothing lies beyond the picture; where no cell is unset, all are far.
+    """
+    return distances_at(mask, mask)
+
+
+@kernel
+def distances_at(wanted: Mask, mask: Mask) -> Array:
+    """Return the distance (H, W) of rows with wanted cells to the nearest unset cell of a mask.
+
+    0 in other rows. Felzenszwalb and Huttenlocher: Distance Transforms of Sampled Functions,
+    2012: exact, in time linear in the cells.
     """
     rows, columns = mask.shape
     far = float(rows + columns)
@@ -36,6 +45,8 @@ def distance_to_unset(mask: Mask) -> Array:
     place = np.zeros(columns, dtype=np.int64)
     border = np.zeros(columns + 1)
     for i in range(rows):
+        if not wanted[i].any():
+            continue
         level = squared[i]
         count = 0  # parabolas of the lower envelope so far, less one
         place[0], border[0], border[1] = 0, -np.inf, np.inf
@@ -240,6 +251,23 @@ def cell_means(
                             around += 1
                 found[i, j] = held / around if around else overall
     return found
+
+
+@kernel
+def unevenness(values: Array, mask: Mask) -> float:
+    """Return how far neighbours (H, W) of a mask differ beyond a slope: noise, per cell.
+
+    The median second difference along the rows, as the deviation of a normal distribution.
+    """
+    rows, columns = mask.shape
+    found = np.empty(rows * columns)
+    count = 0
+    for i in range(rows):
+        for j in range(1, columns - 1):
+            if mask[i, j - 1] and mask[i, j] and mask[i, j + 1]:
+                found[count] = abs(values[i, j + 1] - 2 * values[i, j] + values[i, j - 1])
+                count += 1
+    return middle(found[:count]) / 1.65 if count > 0 else 0.0
 
 
 _LINES = np.array([[0, 1], [1, 0], [1, 1], [1, -1], [1, 2], [2, 1], [1, -2], [2, -1]])

@@ -85,10 +85,13 @@ def hidden_by(
         np.ceil(reach[inside]).astype(np.intp),
         np.ascontiguousarray(depth[inside]),
     )
+    object_depth = cell_means(picture.mask, picture.row, picture.column, ahead)
+    farthest = object_depth[picture.mask].max()
+    if not (front[~picture.mask] < farthest - NEARER * picture.cell).any():
+        return nothing
     beside = ndimage.distance_transform_edt(
         ~picture.mask, return_distances=False, return_indices=True
     )
-    object_depth = cell_means(picture.mask, picture.row, picture.column, ahead)
     object_depth = object_depth[beside[0], beside[1]]
     mask = (front < object_depth - NEARER * picture.cell) & ~picture.mask
     places = picture.middles(np.argwhere(mask))

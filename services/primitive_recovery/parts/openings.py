@@ -4,8 +4,8 @@ from __future__ import annotations
 
 import numpy as np
 from numpy.typing import NDArray
-from scipy import ndimage
 
+from services.primitive_recovery.parts.components import enclosed, labelled_by_sides
 from services.primitive_recovery.parts.grid import distance_to_unset, grown
 from services.primitive_recovery.parts.silhouette import Silhouette
 
@@ -43,18 +43,17 @@ def count_holes(
     count = int(labels.max()) + 1
     holes = [0] * count
     gaps = holes_of(picture.closed, hidden)
+    if not gaps.any():
+        return tuple(holes)
     if hidden is not None and seen is not None and seen < len(labels):
         visible = np.zeros_like(picture.mask)
         visible[picture.row[:seen], picture.column[:seen]] = True
-        joined, _ = ndimage.label((gaps > 0) | hidden | (picture.mask & ~visible))
+        joined, _ = labelled_by_sides((gaps > 0) | hidden | (picture.mask & ~visible))
         gaps = np.where(gaps > 0, joined, 0)
-    numbers = np.unique(gaps[gaps > 0])
-    if not len(numbers):
-        return tuple(holes)
     part = np.full(gaps.shape, -1, dtype=np.int16)
     part[picture.row, picture.column] = labels
     radius = distance_to_unset(gaps > 0)
-    for index in numbers:
+    for index in np.unique(gaps[gaps > 0]):
         gap = gaps == index
         around = part[grown(gap, 2) & ~gap]
         votes = np.bincount(around[around >= 0], minlength=count)
@@ -72,10 +71,4 @@ def holes_of(mask: NDArray[np.bool_], hidden: NDArray[np.bool_] | None = None) -
     touch at a corner alone are apart, as those of the mask hang together there.
     Hidden cells (H, W) are paths, as the object may be absent there, but no hole.
     """
-    found, _ = ndimage.label(~mask)
-    outside = np.unique(np.concatenate([found[0], found[-1], found[:, 0], found[:, -1]]))
-    found[np.isin(found, outside)] = 0
-    if hidden is not None:
-        found[hidden] = 0
-    _, inverse = np.unique(found, return_inverse=True)
-    return np.asarray(inverse.reshape(found.shape), dtype=np.int32)
+    return enclosed(mask, np.zeros_like(mask) if hidden is None else hidden)

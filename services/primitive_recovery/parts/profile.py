@@ -9,7 +9,7 @@ from numpy.typing import NDArray
 
 from services.primitive_recovery.parts.projection import across
 from shared.jit import kernel
-from shared.sorting import ascending
+from shared.sorting import ascending, trimmed_range
 
 Array = NDArray[np.float64]
 Indices = NDArray[np.intp]
@@ -25,6 +25,9 @@ _TRIMS = np.array([0.02, 0.05, 0.05])
 
 _ENDS = 0.001
 """Share of all points beyond each end of the axis."""
+
+_WANTED: Array = np.arange(0.5, SLICES)
+"""Middles of the slices."""
 
 
 @dataclass(frozen=True)
@@ -99,13 +102,10 @@ def profile(
     towards, aside = across(axis, ray)
     towards = -towards if towards @ ray > 0 else towards
     along = points @ axis
-    skipped = round(_ENDS * len(along))
-    ends = np.partition(along, [skipped, len(along) - 1 - skipped])
-    low, high = ends[skipped], ends[len(along) - 1 - skipped]
-    length = max(float(high - low), 1e-12)
+    low, high = trimmed_range(along, round(_ENDS * len(along)))
+    length = max(high - low, 1e-12)
     count = int(np.clip(length / (1.5 * spacing), _FEWEST_SLICES, SLICES))
-    place = np.clip((along - low) / length, 0.0, 1.0)
-    index = np.minimum((place * count).astype(np.intp), count - 1)
+    place, index = sliced(along, low, length, count)
 
     side, near = points @ aside, points @ towards
     values = np.stack([side, height, near])
@@ -125,22 +125,23 @@ def profile(
         known = known & (2 * seen >= right - left)
         side, index = np.concatenate([side, beside]), np.concatenate([index, where])
     filled = filled_share(side, index, left, right, 1.5 * spacing)
-    wanted = np.arange(SLICES) + 0.5
-
-    def spread(values: Array, where: NDArray[np.bool_] = known) -> Array:
-        return np.asarray(np.interp(wanted, centres[where], values[where]))
-
+    width, middle, filled = interpolated(
+        _WANTED, centres, edges, np.stack([right - left, (left + right) / 2, filled])
+    )
+    top, bottom, relief, depth = interpolated(
+        _WANTED, centres, known, np.stack([top, bottom, close - far, depth])
+    )
     return Profile(
         axis=axis,
-        place=place * SLICES,
+        place=place,
         step=length / SLICES,
-        width=np.maximum(spread(right - left, edges), 0.5 * spacing),
-        middle=spread((left + right) / 2, edges),
-        filled=spread(filled, edges),
-        top=spread(top),
-        bottom=spread(bottom),
-        relief=spread(close - far),
-        depth=spread(depth),
+        width=np.maximum(width, 0.5 * spacing),
+        middle=middle,
+        filled=filled,
+        top=top,
+        bottom=bottom,
+        relief=relief,
+        depth=depth,
     )
 
 
@@ -168,6 +169,71 @@ def _completed(
         wanted = np.interp(centres, centres[fixed_right], right[fixed_right])
         right = np.maximum(right, np.minimum(wanted, reach[1]))
     return left, right
+
+
+@kernel
+def sliced(along: Array, low: float, length: float, count: int) -> tuple[Array, Indices]:
+    """Return where points lie between the ends of an axis, in units of SLICES and as slices.
+
+    Parameters
+    ----------
+    along : (N,) array
+        Of every point along the axis, metres.
+    low, length : float
+        Where the axis begins, and how long it is; what is beyond is at its end.
+    count : int
+        How many slices there are.
+
+    Returns
+    -------
+    place : (N,) array
+        From 0 to SLICES.
+    index : (N,) array
+        Slice of every point.
+    """
+    place = np.empty(len(along))
+    index = np.empty(len(along), dtype=np.int64)
+    for k in range(len(along)):
+        share = min(max((along[k] - low) / length, 0.0), 1.0)
+        place[k] = share * SLICES
+        index[k] = min(int(share * count), count - 1)
+    return place, index
+
+
+@kernel
+def interpolated(wanted: Array, at: Array, known: NDArray[np.bool_], values: Array) -> Array:
+    """Return rows of values, known at some places, linearly between: `np.interp` by row.
+
+    Parameters
+    ----------
+    wanted : (W,) array
+        Where they are wanted, ascending; beyond the known ones the values stay.
+    at : (K,) array
+        Ascending.
+    known : (K,) bool array
+        One of them at least.
+    values : (V, K) array
+
+    Returns
+    -------
+    (V, W) array
+    """
+    held = np.flatnonzero(known)
+    found = np.empty((len(values), len(wanted)))
+    j = 0
+    for k in range(len(wanted)):
+        x = wanted[k]
+        while j + 1 < len(held) and at[held[j + 1]] <= x:
+            j += 1
+        one = held[j]
+        if x <= at[one] or j + 1 == len(held):
+            found[:, k] = values[:, one]
+            continue
+        other = held[j + 1]
+        for v in range(len(values)):
+            slope = (values[v, other] - values[v, one]) / (at[other] - at[one])
+            found[v, k] = slope * (x - at[one]) + values[v, one]
+    return found
 
 
 @kernel
@@ -212,10 +278,13 @@ def slice_ranges(
             n = number[each]
             if n == 0:
                 continue
-            own = ascending(held[start[each] : start[each + 1]])
+            own = held[start[each] : start[each + 1]]
             skip = int(trims[v] * n)
-            ranges[v, 0, each], ranges[v, 1, each] = own[skip], own[n - 1 - skip]
-            if v == len(values) - 1:
+            if v < len(values) - 1:
+                ranges[v, 0, each], ranges[v, 1, each] = trimmed_range(own, skip)
+            else:
+                own = ascending(own)
+                ranges[v, 0, each], ranges[v, 1, each] = own[skip], own[n - 1 - skip]
                 mean[each] = own.mean()
     return number, ranges, mean
 

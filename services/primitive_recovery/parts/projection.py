@@ -7,7 +7,9 @@ from dataclasses import dataclass
 import numpy as np
 from numpy.typing import NDArray
 
+from services.primitive_recovery.points import over_depth
 from shared.geometry.rotation import frame_from_z
+from shared.jit import kernel
 
 Array = NDArray[np.float64]
 
@@ -37,9 +39,8 @@ class Projection:
         """Return places (N, 2) and depths (N,) of points (N, 3) about the mean."""
         if self.eye is None:
             local = centred @ self.frame
-            return local[:, :2], np.ascontiguousarray(local[:, 2])
-        local = (centred - self.eye) @ self.frame
-        return local[:, :2] / local[:, 2:], np.ascontiguousarray(local[:, 2])
+            return np.ascontiguousarray(local[:, :2]), np.ascontiguousarray(local[:, 2])
+        return over_depth((centred - self.eye) @ self.frame)
 
     def lifted(self, places: Array, depth: Array) -> Array:
         """Return the points (N, 3) about the mean at places (N, 2) and depths (N,)."""
@@ -49,8 +50,10 @@ class Projection:
         return np.asarray(local @ self.frame.T + self.eye)
 
 
-def projection(centred: Array, eye: Array | None, ray: Array, along: Array) -> Projection:
-    """Return the projection of an object.
+def projected(
+    centred: Array, eye: Array | None, ray: Array, along: Array
+) -> tuple[Projection, Array, Array]:
+    """Return the projection of an object, and places (N, 2) and depths (N,) of its points.
 
     Parameters
     ----------
@@ -67,15 +70,23 @@ def projection(centred: Array, eye: Array | None, ray: Array, along: Array) -> P
     """
     x_axis, y_axis = across(ray, along)
     frame = np.column_stack([x_axis, y_axis, ray])
+    if eye is not None:
+        local = (centred - eye) @ frame
+        if within_cone(local, STEEPEST):
+            places, depth = over_depth(local)
+            return Projection(frame, eye, float(depth.mean())), places, depth
     parallel = Projection(frame, None, 1.0)
-    if eye is None:
-        return parallel
-    local = (centred - eye) @ frame
-    depth = local[:, 2]
-    aside = np.sqrt(local[:, 0] ** 2 + local[:, 1] ** 2)
-    if (aside >= STEEPEST * depth).any():
-        return parallel
-    return Projection(frame, eye, float(depth.mean()))
+    return parallel, *parallel.placed(centred)
+
+
+@kernel
+def within_cone(local: Array, tangent: float) -> bool:
+    """Return whether no ray to points (N, 3) is so far off the third axis, by its tangent."""
+    for n in range(local.shape[0]):
+        aside = np.sqrt(local[n, 0] * local[n, 0] + local[n, 1] * local[n, 1])
+        if aside >= tangent * local[n, 2]:
+            return False
+    return True
 
 
 def across(axis: Array, towards: Array) -> tuple[Array, Array]:

@@ -8,6 +8,8 @@ from pathlib import Path
 import numpy as np
 from numpy.typing import NDArray
 
+from shared.jit import kernel
+
 Array = NDArray[np.float64]
 
 MODELS = Path(__file__).parent.parent / "model"
@@ -60,12 +62,33 @@ class Scorer:
         It stands for the worse of the two overlaps (IoU) between the cut's sides
         and the regions that people hold; 0 where an object is better left whole.
         """
-        scaled = np.clip((features - self.mean) / self.deviation, -_FARTHEST, _FARTHEST)
+        scaled = standardized(features, self.mean, self.deviation, _FARTHEST)
         total = np.zeros(len(features))
         for layers in self.networks:
             held = scaled
             for weights, bias in layers[:-1]:
-                held = np.maximum(held @ weights + bias, 0.0)
+                held = rectified(held @ weights, bias)
             weights, bias = layers[-1]
             total += (held @ weights + bias)[:, 0]
         return total / len(self.networks)
+
+
+@kernel
+def standardized(features: Array, mean: Array, deviation: Array, farthest: float) -> Array:
+    """Return features (N, F) in deviations (F,) from their mean (F,), `farthest` at most."""
+    out = np.empty(features.shape)
+    for n in range(features.shape[0]):
+        for f in range(features.shape[1]):
+            value = (features[n, f] - mean[f]) / deviation[f]
+            out[n, f] = min(max(value, -farthest), farthest)
+    return out
+
+
+@kernel
+def rectified(values: Array, bias: Array) -> Array:
+    """Return values (N, U) plus a bias (U,), 0 where that is negative."""
+    out = np.empty(values.shape)
+    for n in range(values.shape[0]):
+        for u in range(values.shape[1]):
+            out[n, u] = max(values[n, u] + bias[u], 0.0)
+    return out

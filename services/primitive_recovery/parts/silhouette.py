@@ -3,12 +3,14 @@
 from __future__ import annotations
 
 from dataclasses import dataclass
+from functools import cached_property
 
 import numpy as np
 from numpy.typing import NDArray
 
 from services.primitive_recovery.parts.grid import grown
-from shared.geometry.points import bounds
+from services.primitive_recovery.points import corners
+from shared.jit import kernel
 
 Array = NDArray[np.float64]
 Mask = NDArray[np.bool_]
@@ -50,7 +52,7 @@ class Silhouette:
     low: Array
     side: float
 
-    @property
+    @cached_property
     def closed(self) -> Mask:
         """Cells (H, W) of the silhouette with its narrowest gaps filled."""
         return np.asarray(self.mask | ~grown(~grown(self.mask, 1), 1))
@@ -80,22 +82,48 @@ def silhouette(flat: Array, apart: float, metres: float) -> Silhouette:
     metres : float
         Per unit of length there.
     """
-    low, extent = bounds(flat)
+    low, high = corners(flat)
+    extent = high - low
     side = max(CELL * apart, float(max(extent.max(), 1e-12)) / (LONGEST - 1))
-    row, column = np.floor((flat - low) / side).astype(np.intp).T + BORDER
-    mask = np.zeros((row.max() + 1 + BORDER, column.max() + 1 + BORDER), dtype=bool)
-    mask[row, column] = True
+    row, column, mask = drawn(flat, low, side, BORDER)
     return Silhouette(mask, row, column, side * metres, low - BORDER * side, side)
 
 
 def spacing(flat: Array) -> float:
     """Return about how far neighbours are apart, of points (N, 2) spread over an area."""
-    low, extent = bounds(flat)
-    extent = np.maximum(extent, 1e-12)
+    low, high = corners(flat)
+    extent = np.maximum(high - low, 1e-12)
     coarse = float(np.sqrt(extent.prod() / len(flat)))
     coarse = max(coarse, float(extent.max()) / 512)
-    row, column = np.floor((flat - low) / coarse).astype(np.intp).T
-    columns = column.max() + 1
-    occupied = np.zeros((row.max() + 1) * columns, dtype=bool)
-    occupied[row * columns + column] = True
+    _, _, occupied = drawn(flat, low, coarse, 0)
     return coarse * float(np.sqrt(np.count_nonzero(occupied) / len(flat)))
+
+
+@kernel
+def drawn(flat: Array, low: Array, side: float, border: int) -> tuple[Indices, Indices, Mask]:
+    """Return the cells of points, and the picture of all that hold one.
+
+    Parameters
+    ----------
+    flat : (N, 2) array
+    low : (2,) array
+        Their lowest corner: it is in the first cell inside the border.
+    side : float
+        Of a cell, in the unit of the points.
+    border : int
+        Empty cells around them.
+
+    Returns
+    -------
+    row, column : (N,) array
+    mask : (H, W) bool array
+    """
+    count = flat.shape[0]
+    row, column = np.empty(count, dtype=np.int64), np.empty(count, dtype=np.int64)
+    for n in range(count):
+        row[n] = int(np.floor((flat[n, 0] - low[0]) / side)) + border
+        column[n] = int(np.floor((flat[n, 1] - low[1]) / side)) + border
+    mask = np.zeros((row.max() + 1 + border, column.max() + 1 + border), dtype=np.bool_)
+    for n in range(count):
+        mask[row[n], column[n]] = True
+    return row, column, mask

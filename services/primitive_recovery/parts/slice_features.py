@@ -5,7 +5,7 @@ from __future__ import annotations
 import numpy as np
 from numpy.typing import NDArray
 
-from services.primitive_recovery.parts.coverage import coverage
+from services.primitive_recovery.parts.coverage import Coverage
 from services.primitive_recovery.parts.profile import SLICES, Profile
 from services.primitive_recovery.parts.view import PartView
 from shared.jit import kernel
@@ -21,12 +21,18 @@ CUTS = np.arange(MARGIN, SLICES - MARGIN + 1)
 _WINDOWS = np.array([[0, 1], [1, 3], [3, 6], [6, 12], [12, 24], [0, SLICES]])
 """Slices away from the cut, nearest and farthest; the last one is the whole side."""
 
+_LENGTHS = [0, 2, 3, 4, 5, 6]
+"""Channels of lengths; the other one is a share."""
+
+_LINE = np.arange(SLICES) - (SLICES - 1) / 2
+_LINE_SQUARED = _LINE @ _LINE
+
 _PAD = 24
 _LEAST_WIDTH = 0.02
 
 
-def slice_features(profile: Profile, view: PartView) -> tuple[Array, Array]:
-    """Return features (CUTS, F) of all cuts, and the same seen from the other end.
+def slice_features(profile: Profile, view: PartView, covered: Coverage) -> Array:
+    """Return features (2, CUTS, F) of all cuts, and the same seen from the other end.
 
     Over windows that double in reach to either side of a cut: widths and
     their ratios, how much of them is filled, how the two sides are offset
@@ -40,43 +46,64 @@ def slice_features(profile: Profile, view: PartView) -> tuple[Array, Array]:
         Of the object along one of its axes.
     view : PartView
         Of the object.
+    covered : Coverage
+        Of the profile's widths.
     """
     size = profile.size
     channels = np.array(
         [
-            profile.width / size,
+            profile.width,
             profile.filled,
-            _straightened(profile.middle) / size,
-            _straightened(profile.depth) / size,
-            profile.relief / size,
-            profile.top / size,
-            profile.bottom / size,
+            _straightened(profile.middle),
+            _straightened(profile.depth),
+            profile.relief,
+            profile.top,
+            profile.bottom,
         ]
     )
-    lower, upper, whole = coverage(profile.width)
+    channels[_LENGTHS] /= size
     up = view.up
     everywhere = np.array(
         [
             profile.length / size,
-            whole,
+            covered.whole,
             profile.filled.mean(),
             abs(profile.axis @ view.ray),
             0.0 if up is None else 1.0,
             0.0 if up is None else abs(profile.axis @ up),
-            np.ptp(profile.middle) / size,
+            (profile.middle.max() - profile.middle.min()) / size,
             profile.top.max() / size,
             channels[0].max(),
             channels[0].min(),
             float(view.is_piece),
         ]
     )
-    turned = np.ascontiguousarray(channels[:, ::-1])
-    lower, upper = np.ascontiguousarray(lower), np.ascontiguousarray(upper)
-    back = np.ascontiguousarray(upper[::-1]), np.ascontiguousarray(lower[::-1])
-    return (
-        slice_rows(channels, lower, upper, everywhere, _WINDOWS, MARGIN),
-        slice_rows(turned, *back, everywhere, _WINDOWS, MARGIN)[::-1],
+    return rows_both_ways(channels, covered.lower, covered.upper, everywhere, _WINDOWS, MARGIN)
+
+
+@kernel
+def rows_both_ways(
+    channels: Array,
+    lower: Array,
+    upper: Array,
+    everywhere: Array,
+    windows: NDArray[np.int64],
+    margin: int,
+) -> Array:
+    """Return a row per cut (2, CUTS, F), as `slice_rows`, and the same seen from the other end."""
+    ahead = slice_rows(channels, lower, upper, everywhere, windows, margin)
+    back = slice_rows(
+        channels[:, ::-1].copy(),
+        upper[::-1].copy(),
+        lower[::-1].copy(),
+        everywhere,
+        windows,
+        margin,
     )
+    rows = np.empty((2, *ahead.shape))
+    rows[0] = ahead
+    rows[1] = back[::-1]
+    return rows
 
 
 @kernel
@@ -164,5 +191,4 @@ def slice_rows(
 
 def _straightened(values: Array) -> Array:
     """Return values (SLICES,) less the straight line through them."""
-    x = np.arange(SLICES) - (SLICES - 1) / 2
-    return np.asarray(values - values.mean() - x * (x @ values) / (x @ x))
+    return np.asarray(values - values.mean() - _LINE * (_LINE @ values) / _LINE_SQUARED)

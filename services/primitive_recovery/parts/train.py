@@ -17,6 +17,7 @@ from sklearn.exceptions import ConvergenceWarning
 from sklearn.neural_network import MLPRegressor
 
 from services.primitive_recovery.parts.branches import branches
+from services.primitive_recovery.parts.coverage import coverage
 from services.primitive_recovery.parts.lesson import Lesson, pieces, quality, read_lesson
 from services.primitive_recovery.parts.profile import SLICES, Profile, profile
 from services.primitive_recovery.parts.scorer import MODELS
@@ -69,7 +70,7 @@ def show(lesson: Lesson, slices: Rows, sticks: Rows, rng: np.random.Generator) -
         shown = useful > 0
         useless = np.flatnonzero(~shown)
         shown[rng.choice(useless, min(OTHERS, len(useless)), replace=False)] = True
-        features, turned = slice_features(cut, view)
+        features, turned = slice_features(cut, view, coverage(cut.width))
         half = rng.random(len(CUTS)) < 0.5
         slices.add(np.where(half[:, None], features, turned)[shown], useful[shown])
     for branch in branches(view):

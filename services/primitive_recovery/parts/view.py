@@ -8,9 +8,9 @@ import numpy as np
 from numpy.typing import NDArray
 
 from services.primitive_recovery.parts.hidden import Hidden, bridges, fillings, hidden_by
-from services.primitive_recovery.parts.projection import Projection, projection
+from services.primitive_recovery.parts.projection import Projection, projected
 from services.primitive_recovery.parts.silhouette import Silhouette, silhouette, spacing
-from shared.geometry.points import tail_signs
+from services.primitive_recovery.points import about_mean, farthest, third_moments
 from shared.geometry.rotation import unit
 from shared.schemas.scene import SupportPlane
 
@@ -35,6 +35,8 @@ class PartView:
         Unit vector from the sensor to that mean.
     axes : (3, 3) array
         Rows: principal axes, longest first.
+    depth : (N,) array
+        Along the mean ray, from the sensor; from the mean without one. Metres.
     height : (N,) array
         Above the support plane; towards the sensor where there is none. Metres.
     up : (3,) array or None
@@ -60,6 +62,7 @@ class PartView:
     centred: Array
     ray: Array
     axes: Array
+    depth: Array
     height: Array
     up: Array | None
     picture: Silhouette
@@ -76,8 +79,7 @@ class PartView:
 
     def bridges(self) -> Array:
         """Return points (B, 3) where the object goes on behind what hides it, metres."""
-        ahead = self.seen_by.placed(self.centred)[1]
-        return self.middle + bridges(self.hidden, self.picture, self.seen_by, ahead)
+        return self.middle + bridges(self.hidden, self.picture, self.seen_by, self.depth)
 
     def fillings(self) -> list[Array]:
         """Return points (F, 3) where a simple object would go on, in several ways, metres."""
@@ -96,15 +98,13 @@ def part_view(
 
     `others` (M, 3) are points of other things, which may hide some of the object.
     """
-    middle = points.mean(axis=0)
-    centred = points - middle
+    middle, centred = about_mean(points)
     axes = principal_axes(centred)
     ahead = middle - viewpoint
-    reach = float(np.linalg.norm(centred, axis=1).max())
-    amid = float(np.linalg.norm(ahead)) <= reach
+    amid = float(np.linalg.norm(ahead)) <= farthest(centred)
     ray = axes[2] if amid else unit(ahead)
-    seen_by = projection(centred, None if amid else viewpoint - middle, ray, axes[0])
-    flat, depth = seen_by.placed(centred)
+    eye = None if amid else viewpoint - middle
+    seen_by, flat, depth = projected(centred, eye, ray, axes[0])
     apart = spacing(flat)
     picture = silhouette(flat, apart, seen_by.metres)
     up = None
@@ -121,6 +121,7 @@ def part_view(
         centred=centred,
         ray=ray,
         axes=axes,
+        depth=depth,
         height=height,
         up=up,
         picture=picture,
@@ -139,4 +140,5 @@ def principal_axes(centred: Array) -> Array:
     the axes move with the points.
     """
     axes = np.linalg.eigh(centred.T @ centred)[1][:, ::-1].T
-    return np.asarray(tail_signs(centred @ axes.T)[:, None] * axes)
+    backward = third_moments(centred @ axes.T) < 0
+    return np.asarray(np.where(backward, -1.0, 1.0)[:, None] * axes)

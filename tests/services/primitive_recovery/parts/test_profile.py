@@ -9,6 +9,7 @@ from services.primitive_recovery.parts.coverage import coverage
 from services.primitive_recovery.parts.profile import (
     SLICES,
     filled_share,
+    interpolated,
     profile,
     slice_ranges,
 )
@@ -55,6 +56,14 @@ def test_ranges_against_sorting(rng: np.random.Generator) -> None:
         assert ranges[0, :, each].tolist() == [own[0, 0], own[0, -1]]
         assert ranges[1, :, each].tolist() == [own[1, skip], own[1, -1 - skip]]
         assert mean[each] == pytest.approx(own[1].mean())
+
+
+def test_interpolation_is_numpys(rng: np.random.Generator) -> None:
+    wanted, at = np.arange(0.5, SLICES), np.linspace(1.6, SLICES - 1.6, 20)
+    values = rng.normal(size=(3, 20))
+    for known in (rng.random(20) < 0.6, np.arange(20) == 7):
+        expected = [np.interp(wanted, at[known], row[known]) for row in values]
+        np.testing.assert_array_equal(interpolated(wanted, at, known, values), expected)
 
 
 def test_filled_share_of_known_cells() -> None:
