@@ -33,7 +33,7 @@ def test_processes_that_start_together_share_an_empty_cache(tmp_path: Path) -> N
             cwd=PROJECT_ROOT,
             capture_output=True,
             text=True,
-            timeout=300,
+            timeout=900,
             check=False,
         )
 
