@@ -2,14 +2,18 @@
 
 from __future__ import annotations
 
+import ast
 import importlib
-from collections.abc import Callable
+from collections.abc import Callable, Iterator
 from pathlib import Path
 
 import numpy as np
 import pytest
 
 from shared.jit import kernel, kernels_on_disk, read_only
+from shared.settings import PROJECT_ROOT
+
+SORTING = {"sort", "argsort", "median", "nanmedian", "percentile", "quantile", "partition"}
 
 
 def test_a_function_that_cannot_be_cached_works_all_the_same() -> None:
@@ -46,3 +50,31 @@ def test_read_only_makes_one_type_of_all_arrays() -> None:
         assert not given.flags.writeable
         np.testing.assert_array_equal(given, array)
     assert writable.flags.writeable
+
+
+def test_no_kernel_sorts_by_numpy() -> None:
+    """What numba makes of it has names that repeat from process to process (see `kernel`)."""
+    kernels = [*_kernels()]
+    assert len(kernels) > 100
+    assert [name for name, function in kernels if _called(function) & SORTING] == []
+    (snippet,) = ast.parse("def f(x):\n    return np.sort(x)[0] + x.argsort()[0]").body
+    assert _called(snippet) == {"sort", "argsort"}
+
+
+def _kernels() -> Iterator[tuple[str, ast.stmt]]:
+    for folder in ("services", "shared"):
+        for path in sorted((PROJECT_ROOT / folder).rglob("*.py")):
+            for node in ast.walk(ast.parse(path.read_text(encoding="utf-8"))):
+                if isinstance(node, ast.FunctionDef) and any(
+                    isinstance(each, ast.Name) and each.id == "kernel"
+                    for each in node.decorator_list
+                ):
+                    yield f"{path.relative_to(PROJECT_ROOT)}:{node.name}", node
+
+
+def _called(function: ast.AST) -> set[str]:
+    return {
+        node.func.attr
+        for node in ast.walk(function)
+        if isinstance(node, ast.Call) and isinstance(node.func, ast.Attribute)
+    }
