@@ -5,10 +5,22 @@ from __future__ import annotations
 from collections.abc import Iterator, Mapping
 from typing import Any
 
-from tests.kubernetes.manifests import Object, of_kind, pod_labels, pod_of, selects
+from shared.settings import PROJECT_ROOT
+from tests.kubernetes.manifests import (
+    Object,
+    base_objects,
+    of_kind,
+    own_objects,
+    pod_labels,
+    pod_of,
+    selects,
+)
 
 Labels = Mapping[str, str]
 STRANGER: Labels = {"app.kubernetes.io/name": "somebody"}
+WATCHER: Labels = {"namespace:kubernetes.io/metadata.name": "monitoring"}
+"""A pod of another namespace: the labels of that one, so named."""
+OBSERVED = PROJECT_ROOT / "docker" / "kubernetes" / "components" / "observed"
 
 
 def allowed(policies: list[Object], source: Labels | None, target: Labels | None) -> set[Any]:
@@ -28,8 +40,8 @@ def _passing(
     policies: list[Object], direction: str, here: Labels | None, there: Labels | None
 ) -> set[Any] | None:
     """Return the ports that the policies of `here` open to `there`; None: all of them."""
-    if here is None:
-        return None
+    if here is None or any(key.startswith("namespace:") for key in here):
+        return None  # these policies are not about it
     mine = [
         each["spec"]
         for each in policies
@@ -44,10 +56,19 @@ def _opened(spec: Object, direction: str, there: Labels | None) -> Iterator[Any]
     peers = "to" if direction == "Egress" else "from"
     for rule in spec.get(direction.lower(), []):
         meant = peers not in rule or (
-            there is not None and any(selects(each["podSelector"], there) for each in rule[peers])
+            there is not None and any(_is_peer(each, there) for each in rule[peers])
         )
         if meant:
             yield from (port["port"] for port in rule["ports"])
+
+
+def _is_peer(peer: Object, there: Labels) -> bool:
+    """Return whether a rule's peer means pods with such labels; `namespace:` marks another's."""
+    names = {key.removeprefix("namespace:"): value for key, value in there.items()}
+    if "namespaceSelector" in peer:
+        assert "podSelector" not in peer, "both at once are not read here"
+        return names.keys() != there.keys() and selects(peer["namespaceSelector"], names)
+    return names.keys() == there.keys() and selects(peer["podSelector"], there)
 
 
 def test_only_the_gateway_reaches_the_stages(objects: list[Object]) -> None:
@@ -79,3 +100,18 @@ def test_policies_name_a_port_that_pods_have(objects: list[Object]) -> None:
 def test_without_policies_everything_passes() -> None:
     """The reading of policies can say that something is open."""
     assert allowed([], None, STRANGER) == {"any"}
+
+
+def test_the_observed_are_scraped_and_send_traces_and_nothing_else_changes() -> None:
+    plain = base_objects()
+    policies = list(of_kind([*plain, *own_objects(OBSERVED)], "NetworkPolicy").values())
+    for name, deployment in of_kind(plain, "Deployment").items():
+        pod = pod_labels(deployment)
+        assert allowed(list(of_kind(plain, "NetworkPolicy").values()), WATCHER, pod) in (
+            ({8000},) if name == "gateway" else (set(),)
+        )
+        assert allowed(policies, WATCHER, pod) == {8000}
+        assert allowed(policies, pod, WATCHER) == {4317, 4318, 53}
+        assert allowed(policies, pod, None) == {53}
+        assert allowed(policies, None, pod) == ({8000} if name == "gateway" else set())
+        assert allowed(policies, STRANGER, pod) == set()

@@ -4,9 +4,11 @@ from __future__ import annotations
 
 from collections.abc import Iterator, Sequence
 from pathlib import Path
+from typing import Any
 from urllib.parse import urlsplit
 
 import pytest
+import yaml
 
 from services.gateway.settings import STAGES, GatewaySettings
 from services.reasoning.settings import ReasoningSettings
@@ -204,6 +206,43 @@ def test_patches_meet_what_they_change(folder: Path) -> None:
         for each in meant:
             for part in ("containers", "volumes"):
                 assert _names(changed.get(part, [])) <= _names(pod_of(each)[part])
+
+
+def test_patches_reach_every_container(overlay: dict[str, list[Object]]) -> None:
+    """What an overlay says about all containers is what each of them has as rendered."""
+    for name, objects in overlay.items():
+        processors = {
+            pod_of(each)["containers"][0]["resources"]["requests"]["cpu"]
+            for each in of_kind(objects, "Deployment").values()
+        }
+        assert processors == {"small": {"50m"}, "production": {"1"}, "fleet": {"1"}}[name]
+
+
+def test_every_container_has_its_name_in_its_own_lines() -> None:
+    """kustomize patches none whose name is merged in from a piece that is merged itself."""
+    document = yaml.compose((BASE / "deployments.yaml").read_text())
+    containers = [
+        container
+        for key, value in _entries(document)
+        if key == "containers"
+        for container in value.value
+    ]
+    assert len(containers) == len(SERVICES)
+    for container in containers:
+        own = [key.value for key, _ in container.value]
+        assert "name" in own, yaml.serialize(container)
+
+
+def _entries(node: Any) -> Iterator[tuple[str, Any]]:
+    """Yield all keys and values below a node of YAML, aliases as often as they are met."""
+    if isinstance(node, yaml.MappingNode):
+        for key, value in node.value:
+            if key.value != "<<":
+                yield key.value, value
+                yield from _entries(value)
+    elif isinstance(node, yaml.SequenceNode):
+        for each in node.value:
+            yield from _entries(each)
 
 
 def _names(things: Sequence[Object]) -> set[str]:
