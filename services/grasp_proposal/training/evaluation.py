@@ -2,6 +2,7 @@
 
 from __future__ import annotations
 
+from collections.abc import Sequence
 from dataclasses import dataclass
 from typing import Any
 
@@ -9,7 +10,6 @@ import numpy as np
 from numpy.typing import NDArray
 from sklearn.ensemble import HistGradientBoostingClassifier
 
-from services.grasp_proposal.training.calibration import Platt, fit_platt
 from services.grasp_proposal.training.figures import (
     any_per_view,
     average_precision,
@@ -17,8 +17,9 @@ from services.grasp_proposal.training.figures import (
     calibration_error,
     roc_auc,
 )
-from services.grasp_proposal.training.lessons import Lessons
+from services.grasp_proposal.training.lessons import Lessons, objects_of
 from services.grasp_proposal.training.network import Network, train_network
+from services.grasp_proposal.training.order import fit_order
 
 Array = NDArray[np.float64]
 Fold = NDArray[np.intp]
@@ -31,9 +32,9 @@ class HeldOut:
     Attributes
     ----------
     logits : (G,) array
-        Mean of the network's two heads.
+        Mean of the networks' heads.
     probabilities : (G,) array
-        Calibrated on the other folds.
+        Ordered and calibrated on the other folds.
     boosted : (G,) array
         Of gradient boosting on the numbers alone.
     """
@@ -45,36 +46,36 @@ class HeldOut:
 
 def folds_of(lessons: Lessons, folds: int) -> Fold:
     """Return the fold (G,) of every lesson: all grasps of an object are in one."""
-    names = [f"{kind}-{n}" for kind, n in zip(lessons.object_class, lessons.number, strict=True)]
-    return np.asarray(np.unique(names, return_inverse=True)[1] % folds, dtype=np.intp)
+    numbers = np.unique(objects_of(lessons), return_inverse=True)[1]
+    return np.asarray(numbers % folds, dtype=np.intp)
 
 
-def held_out(lessons: Lessons, folds: int, epochs: int, seed: int) -> HeldOut:
-    """Return the scores of every lesson by networks trained without its fold."""
+def held_out(lessons: Lessons, folds: int, epochs: int, networks: int, seed: int) -> HeldOut:
+    """Return the scores of every lesson by as many networks as are shipped, without its fold."""
     fold = folds_of(lessons, folds)
     logits, boosted = np.zeros(len(lessons)), np.zeros(len(lessons))
     for index in range(folds):
         other, mine = lessons.take(fold != index), lessons.take(fold == index)
         if not len(mine):
             continue
-        logits[fold == index] = combined(train_network(other, epochs, seed), mine)
+        logits[fold == index] = combined(ensemble(other, epochs, networks, seed), mine)
         boosted[fold == index] = _boosted(other, mine, seed)
     probabilities = np.zeros(len(lessons))
     for index in range(folds):
-        other_rows = (fold != index) & ~lessons.moved
-        platt = fit_platt(logits[other_rows], lessons.lifted[other_rows])
-        probabilities[fold == index] = platt(logits[fold == index])
+        mine = fold == index
+        found = fit_order(lessons.take(~mine), logits[~mine])
+        probabilities[mine] = found(logits[mine], lessons.numbers[mine])
     return HeldOut(logits, probabilities, boosted)
 
 
-def combined(network: Network, lessons: Lessons) -> Array:
-    """Return what grasps (G,) are ordered by: the mean log odds of lifting and of keeping."""
-    return np.asarray(network.logits(lessons).mean(axis=1))
+def ensemble(lessons: Lessons, epochs: int, networks: int, seed: int) -> list[Network]:
+    """Return networks that differ in their seeds."""
+    return [train_network(lessons, epochs, seed + index) for index in range(networks)]
 
 
-def calibrated(lessons: Lessons, found: HeldOut) -> Platt:
-    """Return the map of held-out logits to how often grasps lift, where they were proposed."""
-    return fit_platt(found.logits[~lessons.moved], lessons.lifted[~lessons.moved])
+def combined(networks: Sequence[Network], lessons: Lessons) -> Array:
+    """Return the mean log odds (G,) of lifting and of keeping, over the networks."""
+    return np.asarray(np.mean([each.logits(lessons).mean(axis=1) for each in networks], axis=0))
 
 
 def report(lessons: Lessons, found: HeldOut) -> dict[str, Any]:

@@ -89,14 +89,23 @@ def read_lessons(folder: Path) -> Lessons:
 
 
 def joined(lessons: Iterable[Lessons]) -> Lessons:
-    """Return lessons of single questions as one, its views counted from 0."""
-    every = [replace(each, view=each.view + index) for index, each in enumerate(lessons)]
+    """Return several lessons as one; their views stay apart."""
+    every, views = [], 0
+    for each in lessons:
+        every.append(replace(each, view=each.view + views))
+        views += int(each.view.max()) + 1 if len(each) else 0
     return Lessons(
         **{
             each.name: np.concatenate([getattr(one, each.name) for one in every])
             for each in fields(Lessons)
         }
     )
+
+
+def objects_of(lessons: Lessons) -> NDArray[np.str_]:
+    """Return the name (G,) of the object of every grasp."""
+    names = zip(lessons.object_class, lessons.number, strict=True)
+    return np.array([f"{kind}-{number}" for kind, number in names])
 
 
 def lessons_of(arrays: Arrays) -> list[Lessons]:
