@@ -5,8 +5,8 @@ from __future__ import annotations
 import numpy as np
 from numpy.typing import NDArray
 
-from services.perception.own_frame import about_mean
 from shared.errors import DegenerateCloud
+from shared.geometry.passes import about_mean
 from shared.geometry.points import principal_axes_of_centred
 
 Array = NDArray[np.float64]

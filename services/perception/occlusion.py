@@ -10,10 +10,10 @@ from numpy.typing import NDArray
 
 from services.perception.cloud import thin
 from services.perception.observation import Observation
-from services.perception.own_frame import bounds
 from services.perception.settings import PerceptionSettings
 from services.perception.shadow import goes_on_behind, hidden_bridge
 from services.perception.things import Thing, measure_thing
+from shared.geometry.passes import corners
 
 Array = NDArray[np.float64]
 
@@ -37,13 +37,13 @@ def join_hidden(
     if len(pieces) < 2:
         return list(things)
     voxel = gap / 3
-    corners = [bounds(piece.points) for piece in pieces]
+    boxes = [corners(piece.points) for piece in pieces]
     clouds: dict[int, Array] = {}
     group = list(range(len(pieces)))
     for a, b in combinations(range(len(pieces)), 2):
         small, large = sorted((len(pieces[a].members), len(pieces[b].members)))
         reach = settings.hidden_gap_m if small < _MINOR * large else _ALWAYS * gap
-        apart = _apart(corners[a], corners[b])
+        apart = _apart(boxes[a], boxes[b])
         if group[a] == group[b] or apart > max(reach, settings.hidden_bar_m):
             continue
         for piece in (a, b):

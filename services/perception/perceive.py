@@ -8,7 +8,6 @@ from numpy.typing import NDArray
 from services.perception.cloud import thin
 from services.perception.degenerate import require_area, require_volume
 from services.perception.observation import Observation, observe
-from services.perception.own_frame import bounds
 from services.perception.settings import PerceptionSettings
 from services.perception.support import choose_support
 from services.perception.tabletop import Tabletop
@@ -16,6 +15,7 @@ from services.perception.things import Thing, most_appealing
 from services.perception.units import checked_target
 from services.perception.up import guess_up
 from shared.deadline import check_deadline
+from shared.geometry.passes import corners
 from shared.geometry.points import points_from_depth
 from shared.geometry.rotation import frame_from_z
 from shared.schemas.scene import PerceiveRequest, PerceiveResponse, SupportPlane
@@ -111,7 +111,7 @@ class Perception:
         rows = np.concatenate([*things, np.flatnonzero(top.furniture)]).astype(np.intp)
         rows = np.sort(rows)
         frame = frame_from_z(up)
-        low, high = bounds(chosen.points @ frame)
+        low, high = corners(chosen.points @ frame)
         reach = self.settings.obstacle_reach_m
         others = view.points.take(rows, axis=0)
         placed = np.ascontiguousarray((others @ frame).T)

@@ -11,8 +11,8 @@ from services.perception.cloud import cluster
 from services.perception.median import median
 from services.perception.moments import biweight_moments
 from services.perception.noise import SIGMA_PER_MEDIAN
-from services.perception.own_frame import about_mean
 from services.perception.settings import PerceptionSettings
+from shared.geometry.passes import about_mean
 from shared.geometry.plane import height_above, plane_basis
 from shared.geometry.points import tail_signs
 

@@ -6,7 +6,7 @@ import numpy as np
 from numpy.typing import NDArray
 from scipy.spatial import cKDTree
 
-from services.perception.own_frame import about_mean
+from shared.geometry.passes import about_mean
 from shared.geometry.points import principal_axes_of_centred
 from shared.geometry.rotation import unit
 

@@ -10,9 +10,9 @@ import numpy as np
 from numpy.typing import NDArray
 
 from services.perception.observation import Observation
-from services.perception.own_frame import about_mean
 from services.perception.pixels import distances
 from services.perception.settings import PerceptionSettings
+from shared.geometry.passes import about_mean
 from shared.geometry.points import principal_axes_of_centred
 
 Array = NDArray[np.float64]

@@ -5,8 +5,8 @@ from __future__ import annotations
 import numpy as np
 from numpy.typing import NDArray
 
-from services.perception.own_frame import bounds
 from shared.errors import WrongUnits
+from shared.geometry.passes import corners
 from shared.schemas.scene import InputKind
 
 Array = NDArray[np.float64]
@@ -52,7 +52,7 @@ def checked_target(target: tuple[float, float, float], points: Array) -> Array:
     WrongUnits
         It is so far from all points that it must be in millimetres.
     """
-    low, high = bounds(points)
+    low, high = corners(points)
     point = np.array(target)
     away = float(np.maximum(low - point, point - high).max())
     if away > MAX_EXTENT_M["scene"]:

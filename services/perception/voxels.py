@@ -5,7 +5,8 @@ from __future__ import annotations
 import numpy as np
 from numpy.typing import NDArray
 
-from services.perception.own_frame import bounds, own_frame
+from services.perception.own_frame import own_frame
+from shared.geometry.passes import corners
 from shared.jit import kernel
 
 Array = NDArray[np.float64]
@@ -27,7 +28,7 @@ def voxel_means(points: Array, edge: float) -> tuple[Array, Labels]:
         return np.empty((0, 3)), np.empty(0, dtype=np.int32)
     points = np.ascontiguousarray(points)
     local = own_frame(points)
-    low, high = bounds(local)
+    low, high = corners(local)
     reach = float(np.maximum(high, -low).max())
     edge = max(edge, 2 * reach / _MAX_CELLS)
     voxel, count = _number_voxels(local, int(reach / edge) + 1, edge)

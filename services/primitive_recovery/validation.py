@@ -5,8 +5,9 @@ from __future__ import annotations
 import numpy as np
 from numpy.typing import NDArray
 
-from services.primitive_recovery.points import about_mean, second_moments
+from services.primitive_recovery.points import second_moments
 from shared.errors import DegenerateCloud, EmptyCloud, InvalidInput, PayloadTooLarge, WrongUnits
+from shared.geometry.passes import about_mean
 from shared.geometry.points import bounds
 from shared.schemas.fields import FARTHEST_M
 

@@ -12,7 +12,8 @@ from services.primitive_recovery.fitting.extremes import (
     frame_about,
     nearest_spacing,
 )
-from services.primitive_recovery.points import about_mean, corners, over_depth, unit_rows
+from services.primitive_recovery.points import over_depth, unit_rows
+from shared.geometry.passes import about_mean, corners
 
 Array = NDArray[np.float64]
 

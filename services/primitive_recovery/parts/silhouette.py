@@ -9,7 +9,7 @@ import numpy as np
 from numpy.typing import NDArray
 
 from services.primitive_recovery.parts.grid import grown
-from services.primitive_recovery.points import corners
+from shared.geometry.passes import corners
 from shared.jit import kernel
 
 Array = NDArray[np.float64]

@@ -10,7 +10,8 @@ from numpy.typing import NDArray
 from services.primitive_recovery.parts.hidden import Hidden, bridges, fillings, hidden_by
 from services.primitive_recovery.parts.projection import Projection, projected
 from services.primitive_recovery.parts.silhouette import Silhouette, silhouette, spacing
-from services.primitive_recovery.points import about_mean, farthest, third_moments
+from services.primitive_recovery.points import farthest, third_moments
+from shared.geometry.passes import about_mean
 from shared.geometry.rotation import unit
 from shared.schemas.scene import SupportPlane
 

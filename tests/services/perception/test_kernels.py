@@ -16,7 +16,7 @@ from services.perception.cloud import cluster, thin
 from services.perception.interpolation import interpolate
 from services.perception.median import median
 from services.perception.moments import biweight_moments, moments_near
-from services.perception.own_frame import about_mean, bounds, own_frame
+from services.perception.own_frame import own_frame
 from services.perception.pixels import (
     distances,
     heights_above,
@@ -32,6 +32,7 @@ from services.perception.relief_map import (
     window_means,
 )
 from services.perception.voxels import voxel_means
+from shared.geometry.passes import about_mean, corners
 from shared.geometry.points import points_from_depth
 from shared.geometry.rotation import unit
 from shared.jit import read_only
@@ -137,16 +138,16 @@ def test_votes(rng: np.random.Generator) -> None:
 
 def test_corners_and_normals(rng: np.random.Generator) -> None:
     points, triples = rng.normal(size=(30, 3)), rng.integers(0, 30, (50, 3))
-    corners, normals = corners_and_normals(points, triples)
+    first, normals = corners_and_normals(points, triples)
     a, b, c = points[triples.T]
-    np.testing.assert_array_equal(corners, a)
+    np.testing.assert_array_equal(first, a)
     np.testing.assert_array_equal(normals, np.cross(b - a, c - a))
 
 
 @pytest.mark.parametrize("spread", [0.2, 1e-9, 1e6])
 def test_voxels(spread: float, rng: np.random.Generator) -> None:
     points = rng.uniform(-spread, spread, (500, 3))
-    low, high = bounds(points)
+    low, high = corners(points)
     np.testing.assert_array_equal([low, high], [points.min(axis=0), points.max(axis=0)])
     means, voxel = voxel_means(points, 0.03)
     assert sorted(set(voxel.tolist())) == list(range(len(means)))

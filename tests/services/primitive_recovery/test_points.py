@@ -7,14 +7,13 @@ import pytest
 from numpy.typing import NDArray
 
 from services.primitive_recovery.points import (
-    about_mean,
-    corners,
     farthest,
     over_depth,
     second_moments,
     third_moments,
     unit_rows,
 )
+from shared.geometry.passes import about_mean, corners
 
 
 @pytest.fixture(params=[1, 7, 5000])
