@@ -5,8 +5,8 @@ from __future__ import annotations
 from collections.abc import Iterator, Mapping
 from typing import Any
 
-from shared.settings import PROJECT_ROOT
 from tests.kubernetes.manifests import (
+    FOLDER,
     Object,
     base_objects,
     of_kind,
@@ -20,7 +20,7 @@ Labels = Mapping[str, str]
 STRANGER: Labels = {"app.kubernetes.io/name": "somebody"}
 WATCHER: Labels = {"namespace:kubernetes.io/metadata.name": "monitoring"}
 """A pod of another namespace: the labels of that one, so named."""
-OBSERVED = PROJECT_ROOT / "docker" / "kubernetes" / "components" / "observed"
+OBSERVED = FOLDER / "components" / "observed"
 
 
 def allowed(policies: list[Object], source: Labels | None, target: Labels | None) -> set[Any]:
@@ -104,12 +104,11 @@ def test_without_policies_everything_passes() -> None:
 
 def test_the_observed_are_scraped_and_send_traces_and_nothing_else_changes() -> None:
     plain = base_objects()
-    policies = list(of_kind([*plain, *own_objects(OBSERVED)], "NetworkPolicy").values())
+    before = list(of_kind(plain, "NetworkPolicy").values())
+    policies = [*before, *of_kind(own_objects(OBSERVED), "NetworkPolicy").values()]
     for name, deployment in of_kind(plain, "Deployment").items():
         pod = pod_labels(deployment)
-        assert allowed(list(of_kind(plain, "NetworkPolicy").values()), WATCHER, pod) in (
-            ({8000},) if name == "gateway" else (set(),)
-        )
+        assert allowed(before, WATCHER, pod) == ({8000} if name == "gateway" else set())
         assert allowed(policies, WATCHER, pod) == {8000}
         assert allowed(policies, pod, WATCHER) == {4317, 4318, 53}
         assert allowed(policies, pod, None) == {53}

@@ -8,6 +8,7 @@ import numpy as np
 from numpy.typing import NDArray
 from scipy.optimize import minimize
 
+from services.grasp_proposal.learned import sigmoid
 from services.grasp_proposal.measures import torques
 from services.grasp_proposal.training.calibration import Platt, fit_platt, logistic
 from services.grasp_proposal.training.lessons import Lessons
@@ -93,7 +94,7 @@ def fit_torque(logits: Array, torque: Array, held: NDArray[np.bool_], view: Rows
 
     def loss(weights: Array) -> tuple[float, Array]:
         margin = difference @ weights
-        wrong = share / (1 + np.exp(np.clip(margin, -500, 500)))
+        wrong = share * sigmoid(-margin)
         return float(share @ np.logaddexp(0, -margin)), -difference.T @ wrong
 
     weights = minimize(
