@@ -14,6 +14,7 @@ A trial's file holds what the grasp proposal is asked with, and what came of its
     moved (G,) bool           moved by a few millimetres and degrees from where the answer has it
     lifted, held (G,) bool    lifted off the table; kept when shaken and tilted, too
     outcome (G,) str          of POST /execute
+    rehearsed (G,) str        the same on the superquadrics; empty where it came to no end
     object_class () str, number () int, view () int, sigma_at_1m () float
     mass () float             kg
 """
@@ -32,7 +33,8 @@ from experiments.framework.replay import free_hand
 from experiments.trials.candidates import Tried, spread
 from experiments.trials.scenes import Scene
 from shared.client import GraspResult, Sparge
-from shared.errors import DeadlineExceeded, SpargeError
+from shared.errors import DeadlineExceeded, InvalidInput, SpargeError
+from shared.rehearsal import rehearsal
 from shared.schemas.execution import ExecuteRequest, ExecuteResponse
 from shared.schemas.primitive import superquadric_rows
 
@@ -97,6 +99,10 @@ def try_out(
         _judged(judge, execution(scene, row, asked[index][1]))
         for index, row in zip(question, grasps, strict=True)
     ]
+    rehearsed = [
+        _rehearsed(judge, _rehearsal(scene, row, asked[index][0], asked[index][1]))
+        for index, row in zip(question, grasps, strict=True)
+    ]
     done = np.array([each is not None for each in happened], dtype=np.bool_)
     answers = [each for each in happened if each is not None]
     if not answers:
@@ -118,6 +124,7 @@ def try_out(
         "lifted": np.array([each.lifted for each in answers]),
         "held": outcome == HELD,
         "outcome": outcome,
+        "rehearsed": np.array(rehearsed)[done],
         "object_class": np.array(scene.thing.class_name),
         "number": np.array(int(scene.thing.name.split("-")[-1])),
         "view": np.array(scene.view),
@@ -131,12 +138,34 @@ def execution(scene: Scene, grasp: Array, gripper: str) -> ExecuteRequest:
     return free_hand(scene.shown, scene.vertices, scene.faces, grasp, gripper, scene.mass)
 
 
+def _rehearsal(scene: Scene, grasp: Array, result: GraspResult, gripper: str) -> ExecuteRequest:
+    """Return the request to try a grasp (9,) on what was recovered of the object."""
+    seen = result.answer.scene
+    return rehearsal(
+        grasp,
+        superquadric_rows(result.answer.primitives).tolist(),
+        points=scene.shown.points[result.point_primitive >= 0],
+        viewpoint=(0.0, 0.0, 0.0),
+        plane=seen.plane,
+        up=seen.up,
+        gripper=gripper,
+    )
+
+
 def _judged(judge: Judge, request: ExecuteRequest) -> ExecuteResponse | None:
     """Return what came of a grasp; None where the simulation came to no end in time."""
     try:
         return judge(request)
     except DeadlineExceeded:
         return None
+
+
+def _rehearsed(judge: Judge, request: ExecuteRequest) -> str:
+    """Return what came of a rehearsal; empty where it came to no end or has no object."""
+    try:
+        return judge(request).outcome
+    except (DeadlineExceeded, InvalidInput):
+        return ""
 
 
 def _ask(sparge: Sparge, scene: Scene, task: str, gripper: str) -> GraspResult | None:
@@ -148,6 +177,7 @@ def _ask(sparge: Sparge, scene: Scene, task: str, gripper: str) -> GraspResult |
             gripper=gripper,
             max_grasps=MAX_GRASPS,
             explain=False,
+            rehearsal="never",
         )
     except NOT_THE_VIEW:
         raise

@@ -24,7 +24,7 @@ from services.execution.outcome import (
 )
 from services.execution.placement import Obstruction, Plan, plan_motion
 from services.execution.recording import Recorder
-from services.execution.waypoints import shake, tilt
+from services.execution.waypoints import LEFT, shake, tilt
 from services.execution.world import SETTLE_S, World
 from shared.geometry.se3 import inverse
 from shared.schemas.execution import Phase
@@ -57,6 +57,8 @@ class ArmTrial:
         Shake and tilt, too.
     recorders : sequence of Recorder
         Watch the motion.
+    side : (3,) array
+        Along it the object is shaken, about it it is tilted.
 
     Attributes
     ----------
@@ -75,6 +77,7 @@ class ArmTrial:
         opening: float,
         strict: bool = False,
         recorders: Sequence[Recorder] = (),
+        side: Array = LEFT,
     ) -> None:
         self._world = world
         self._arm = arm
@@ -84,6 +87,7 @@ class ArmTrial:
         self.rise = 0.0
         self.lifted = False
         self._recorders = recorders
+        self._side = side
         self._steps = round(SETTLE_S / TIME_STEP)
         self.phases: list[Phase] = []
         self._end_phase("settle")
@@ -127,7 +131,7 @@ class ArmTrial:
         """Shake and tilt as far as the arm reaches, and judge again."""
         arm, world = self._arm, self._world
         high = arm.world_from_grasp()
-        legs = [*shake(high), *tilt(high)]
+        legs = [*shake(high, self._side), *tilt(high, self._side)]
         joints, paths = plan.lift[-1], []
         now = arm.joints
         for leg in legs:

@@ -13,7 +13,7 @@ from services.execution.flying_cup import FlyingCup
 from services.execution.flying_hand import FlyingHand
 from services.execution.outcome import Verdict
 from services.execution.recording import Recorder
-from services.execution.waypoints import Leg, approach, lift, shake, tilt
+from services.execution.waypoints import LEFT, Leg, approach, lift, shake, tilt
 from services.execution.world import SETTLE_S, World
 from shared.schemas.execution import Outcome, Phase
 
@@ -43,6 +43,8 @@ class HandTrial:
         Shake and tilt, too.
     recorders : sequence of Recorder
         Watch the motion.
+    side : (3,) array
+        Along it the object is shaken, about it it is tilted.
 
     Attributes
     ----------
@@ -60,12 +62,14 @@ class HandTrial:
         world_from_grasp: Array,
         strict: bool,
         recorders: Sequence[Recorder] = (),
+        side: Array = LEFT,
     ) -> None:
         self._world = world
         self._hand = hand
         self._world_from_grasp = world_from_grasp
         self._strict = strict
         self._recorders = recorders
+        self._side = side
         self.rise = 0.0
         self.lifted = False
         self._steps = round(SETTLE_S / TIME_STEP)
@@ -86,7 +90,8 @@ class HandTrial:
         if not self._strict:
             return self._kept("lifted")
         high = legs[-1].end
-        if self._dropped_during([*shake(high), *tilt(high)]) or not self._held():
+        moved_about = [*shake(high, self._side), *tilt(high, self._side)]
+        if self._dropped_during(moved_about) or not self._held():
             return self._slipped("slipped_in_shake")
         return self._kept("held")
 

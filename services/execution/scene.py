@@ -13,6 +13,7 @@ from numpy.typing import NDArray
 
 from services.execution.convex import ConvexPart
 from services.execution.decomposition import parts_of_mesh, parts_of_primitives
+from services.execution.waypoints import LEFT
 from shared.errors import InvalidInput
 from shared.geometry.rotation import frame_from_z, unit
 from shared.geometry.se3 import inverse, matrix_from_pose, pose_matrix
@@ -24,6 +25,8 @@ DIP = 0.002
 """Metres below the table from which an object is raised: no plane is known better."""
 STEEP = 0.3
 """Below this horizontal share of the approach direction, a grasp comes from above."""
+LEVEL = 1e-3
+"""Below this horizontal share a direction heads nowhere."""
 
 
 @dataclass(frozen=True)
@@ -40,6 +43,8 @@ class Scene:
         Opening that the grasp needs, metres.
     parts : tuple of ConvexPart
         The object in the world's frame, nothing of it below z = 0.
+    side : (3,) array
+        Level, of length 1: to the left of who looks along the request's `heading`, or world y.
     raised : float
         How far it was raised for that, metres.
     """
@@ -48,6 +53,7 @@ class Scene:
     world_from_grasp: Array
     width: float
     parts: tuple[ConvexPart, ...]
+    side: Array
     raised: float = 0.0
 
 
@@ -86,8 +92,18 @@ def scene_from_request(request: ExecuteRequest) -> Scene:
         world_from_frame @ frame_from_grasp,
         request.width,
         solid,
+        _side(request, world_from_frame),
         raised,
     )
+
+
+def _side(request: ExecuteRequest, world_from_frame: Array) -> Array:
+    """Return the left of who looks along the heading; of one that is vertical there is none."""
+    if request.heading is None:
+        return LEFT
+    heading = world_from_frame[:3, :3] @ unit(request.heading)
+    level = float(np.hypot(heading[0], heading[1]))
+    return LEFT if level < LEVEL else np.array([-heading[1], heading[0], 0.0]) / level
 
 
 def _standing(parts: list[ConvexPart]) -> tuple[tuple[ConvexPart, ...], float]:

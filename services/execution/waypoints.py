@@ -21,6 +21,8 @@ SHAKE = 0.03
 SHAKE_HZ = 2.0
 SHAKE_PERIODS = 2
 TILT = np.radians(60.0)
+LEFT = np.array([0.0, 1.0, 0.0])
+"""Of who looks along world x."""
 
 
 class Leg(NamedTuple):
@@ -85,17 +87,20 @@ def lift(world_from_grasp: Array) -> list[Leg]:
     return [Leg("lift", world_from_grasp, high, 1.5), Leg("hold", high, high, 1.0)]
 
 
-def shake(high: Array) -> list[Leg]:
-    """Return swings of 3 cm to either side along world y, with sudden turns, ending where begun."""
-    left, right = (moved(high, np.array([0.0, side * SHAKE, 0.0])) for side in (1, -1))
+def shake(high: Array, side: Array = LEFT) -> list[Leg]:
+    """Return swings of 3 cm to either side, with sudden turns, ending where begun.
+
+    `side` is a level direction (3,) of length 1.
+    """
+    left, right = (moved(high, sign * SHAKE * side) for sign in (1, -1))
     ways = [(high, left), (right, left), (left, right), (right, left)]
     half = 1 / (2 * SHAKE_HZ)
     legs = [Leg("shake", start, end, half) for start, end in ways]
     return [*legs, Leg("shake", left, high, half / 2)]
 
 
-def tilt(high: Array) -> list[Leg]:
-    """Return a turn by 60 degrees about world y and half a second of rest."""
+def tilt(high: Array, side: Array = LEFT) -> list[Leg]:
+    """Return a turn by 60 degrees about `side`, forward where that is left, and half a second."""
     turned = high.copy()
-    turned[:3, :3] = Rotation.from_euler("y", TILT).as_matrix() @ high[:3, :3]
+    turned[:3, :3] = Rotation.from_rotvec(TILT * side).as_matrix() @ high[:3, :3]
     return [Leg("tilt", high, turned, 1.0), Leg("tilt", turned, turned, 0.5)]

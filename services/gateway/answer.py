@@ -11,6 +11,7 @@ from services.gateway.pipeline import Outcome
 from services.gateway.request import GraspRequest
 from services.gateway.settings import GatewaySettings
 from shared.geometry.rotation import matrix_from_quaternion
+from shared.schemas import execution
 from shared.schemas.answer import (
     Grasp,
     GraspAnswer,
@@ -53,7 +54,8 @@ def compose(
             LabelledPrimitive(**dict(each), labels=decision.labels.get(each.id, ()))
             for each in outcome.recovered.primitives
         ),
-        grasps=tuple(_grasp(row, up, settings) for row in outcome.grasps),
+        grasps=_grasps(outcome, up, settings),
+        rehearsal=outcome.rehearsed.report if outcome.rehearsed else None,
         rejected=_rejected(outcome),
         explanation=decision.explanation,
         scene=Scene(
@@ -92,7 +94,23 @@ def to_npz(held: Mapping[str, NDArray[np.generic]], report: Message) -> bytes:
     return write_npz({**held, "report": text})
 
 
-def _grasp(row: NDArray[np.float64], up: NDArray[np.float64], settings: GatewaySettings) -> Grasp:
+def _grasps(
+    outcome: Outcome, up: NDArray[np.float64], settings: GatewaySettings
+) -> tuple[Grasp, ...]:
+    if outcome.rehearsed is None:
+        return ()
+    return tuple(
+        _grasp(row, came, up, settings)
+        for row, came in zip(outcome.grasps, outcome.rehearsed.of_answered, strict=True)
+    )
+
+
+def _grasp(
+    row: NDArray[np.float64],
+    rehearsed: execution.Outcome | None,
+    up: NDArray[np.float64],
+    settings: GatewaySettings,
+) -> Grasp:
     position, quaternion, width, score = row[:3], row[3:7], row[7], row[8]
     approach = matrix_from_quaternion(quaternion)[:, 2]
     before = position - settings.approach_distance * approach
@@ -103,6 +121,7 @@ def _grasp(row: NDArray[np.float64], up: NDArray[np.float64], settings: GatewayS
         retreat=_pose(after, quaternion),
         width=float(width),
         score=float(np.clip(score, 0, 1)),
+        rehearsed=rehearsed,
     )
 
 

@@ -1,4 +1,4 @@
-"""The chain: perception, primitives, reasoning, region, grasps, selection.
+"""The chain: perception, primitives, reasoning, region, grasps, selection, rehearsal.
 
 Data flows one way; no stage calls back. Every call has what is left of the
 request's time (`shared.deadline`).
@@ -13,12 +13,17 @@ from dataclasses import dataclass, field
 
 import numpy as np
 from cachetools import TTLCache
+from numpy.typing import NDArray
 
 from services.gateway.formats import require_fitting
 from services.gateway.metrics import GraspMetrics
+from services.gateway.rehearsal import Rehearsed, rehearse
 from services.gateway.request import GraspRequest
 from services.gateway.settings import GatewaySettings
+from shared.deadline import remaining_s, within
 from shared.errors import SpargeError, UnknownGripper
+from shared.rehearsal import rehearsal
+from shared.schemas.execution import EXECUTE, ExecuteResponse
 from shared.schemas.grasp import (
     FIND_REGION,
     LIST_GRIPPERS,
@@ -43,6 +48,9 @@ from shared.schemas.scene import PERCEIVE, PerceiveRequest, PerceiveResponse
 from shared.schemas.task import DECIDE, DecideRequest, DecideResponse
 from shared.service import Stage
 
+Array = NDArray[np.float64]
+REHEARSAL = "rehearsal"
+"""Grasps tried in simulation before they are answered, among the timings."""
 CHECKS = "checks"
 """Whether the task and the gripper are known, among the timings; it runs beside perception."""
 REMEMBER_S = 5.0
@@ -60,12 +68,16 @@ class Outcome:
     decision: DecideResponse
     assigned: RegionResponse
     proposed: ProposeResponse | None
-    selected: SelectResponse | None
+    rehearsed: Rehearsed | None
     gripper: Gripper
     timings_ms: dict[str, float]
 
     @property
-    def grasps(self) -> np.ndarray:
+    def selected(self) -> SelectResponse | None:
+        return None if self.rehearsed is None else self.rehearsed.selected
+
+    @property
+    def grasps(self) -> Array:
         """Grasp rows (G, 9)."""
         return np.empty((0, 9)) if self.selected is None else self.selected.grasps
 
@@ -135,11 +147,12 @@ class Pipeline:
                 point_primitive=recovered.point_primitive,
             ),
         )
-        proposed, selected = None, None
+        proposed, rehearsed = None, None
         if assigned.point_region.any() and request.parameters.max_grasps > 0:
-            proposed, selected = await self._grasp(run, request, scene, recovered, assigned)
+            proposed = await self._propose(run, request, scene, recovered, assigned)
+            rehearsed = await self._choose(run, request, scene, recovered, assigned, proposed)
         return Outcome(
-            scene, recovered, decision, assigned, proposed, selected, gripper, run.timings_ms
+            scene, recovered, decision, assigned, proposed, rehearsed, gripper, run.timings_ms
         )
 
     async def _perceive(self, run: _Run, request: GraspRequest) -> tuple[Gripper, PerceiveResponse]:
@@ -250,15 +263,15 @@ class Pipeline:
             ),
         )
 
-    async def _grasp(
+    async def _propose(
         self,
         run: _Run,
         request: GraspRequest,
         scene: PerceiveResponse,
         recovered: RecoverResponse,
         assigned: RegionResponse,
-    ) -> tuple[ProposeResponse, SelectResponse]:
-        proposed = await run.call(
+    ) -> ProposeResponse:
+        return await run.call(
             PROPOSE,
             ProposeRequest(
                 points=scene.object_points,
@@ -274,19 +287,48 @@ class Pipeline:
                 rejected=request.parameters.rejected,
             ),
         )
-        selected = await run.call(
-            SELECT,
-            SelectRequest(
-                points=scene.object_points,
-                point_region=assigned.point_region,
-                grasps=proposed.grasps,
-                on_region=proposed.on_focus,
-                keeps_clear=proposed.keeps_clear,
-                max_grasps=request.parameters.max_grasps,
-                rejected=request.parameters.rejected,
-                rejected_poses=proposed.rejected_poses,
-                rejected_reasons=proposed.rejected_reasons,
-                seed=request.parameters.seed,
-            ),
-        )
-        return proposed, selected
+
+    async def _choose(
+        self,
+        run: _Run,
+        request: GraspRequest,
+        scene: PerceiveResponse,
+        recovered: RecoverResponse,
+        assigned: RegionResponse,
+        proposed: ProposeResponse,
+    ) -> Rehearsed:
+        """Return the grasps that hold the region, those in doubt rehearsed."""
+        parameters = request.parameters
+        until = time.monotonic() + min(self._settings.rehearsal_time_s, remaining_s() / 2)
+
+        async def select(grasps: Array) -> SelectResponse:
+            return await run.call(
+                SELECT,
+                SelectRequest(
+                    points=scene.object_points,
+                    point_region=assigned.point_region,
+                    grasps=grasps,
+                    on_region=proposed.on_focus,
+                    keeps_clear=proposed.keeps_clear,
+                    max_grasps=parameters.max_grasps,
+                    rejected=parameters.rejected,
+                    rejected_poses=proposed.rejected_poses,
+                    rejected_reasons=proposed.rejected_reasons,
+                    seed=parameters.seed,
+                ),
+            )
+
+        async def attempt(grasp: Array) -> ExecuteResponse:
+            with within(until - time.monotonic()):
+                request = rehearsal(
+                    grasp,
+                    [each.parameters for each in recovered.primitives],
+                    points=scene.object_points,
+                    viewpoint=parameters.viewpoint,
+                    plane=scene.plane,
+                    up=scene.up,
+                    gripper=parameters.gripper,
+                )
+                return await run.call(EXECUTE, request, REHEARSAL)
+
+        return await rehearse(proposed, select, attempt, parameters.rehearsal)

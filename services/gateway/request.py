@@ -13,6 +13,7 @@ from shared.schemas.fields import TaskText, Vector3
 from shared.schemas.formats import Format
 from shared.schemas.point_cloud2 import PointCloud2, cloud_points, is_point_cloud2
 from shared.schemas.primitive import EmsParameters, Method
+from shared.schemas.rehearsal import Rehearsing
 from shared.schemas.rejection import Examples
 from shared.schemas.ros import RosTime
 from shared.schemas.scene import InputKind, View
@@ -46,6 +47,8 @@ class GraspParameters(Message):
     recovery: EmsParameters | None = None
     """Parameters of the method `ems`, instead of the backend's own."""
     explain: bool = True
+    rehearsal: Rehearsing = "auto"
+    """Whether grasps are tried in simulation before they are answered."""
     rejected: Examples = 0
     """So many hand poses that were considered and left out are in the answer, with the reason."""
     frame_id: Annotated[str, Field(min_length=1, max_length=128)] = "camera"

@@ -36,6 +36,8 @@ class GatewaySettings(ServiceSettings):
         Bound on the time to answer POST /grasp; a request's `X-Request-Timeout` may be less.
     execution_deadline_s : float
         The same for POST /execute.
+    rehearsal_time_s : float
+        How long grasps may be rehearsed for one answer; those in doubt after that are not.
     samples : int
         Points at which grasps are sought (thesis 6.4.1: 300).
     preset : str or None
@@ -82,6 +84,7 @@ class GatewaySettings(ServiceSettings):
     queue_wait_s: float = Field(default=1.0, ge=0)
     deadline_s: float = Field(default=30.0, gt=0)
     execution_deadline_s: float = Field(default=60.0, gt=0)
+    rehearsal_time_s: float = Field(default=5.0, gt=0)
     samples: int = Field(default=300, ge=1, le=5000)
     preset: Preset | None = None
     rule_set: RuleSet = "default"

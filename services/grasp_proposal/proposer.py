@@ -13,6 +13,7 @@ from services.grasp_proposal.closing_region import upright
 from services.grasp_proposal.contacts import Contacts, concatenated
 from services.grasp_proposal.cup import Cup
 from services.grasp_proposal.diversity import distinct
+from services.grasp_proposal.doubt import doubtful
 from services.grasp_proposal.examples import keep_unlike
 from services.grasp_proposal.hand import Hand
 from services.grasp_proposal.learned import LearnedScorer
@@ -33,6 +34,7 @@ from shared.schemas.route import Nothing
 from shared.schemas.scene import SupportPlane
 
 Array = NDArray[np.float64]
+Mask = NDArray[np.bool_]
 
 _ENOUGH = 16
 _AWAY = 0.010
@@ -93,15 +95,17 @@ class GraspProposer:
             rows = _rows(workspace, cups.centres, cups.rotations, closed, cups.scores)
             on_focus = np.tile(cups.in_focus[:, None], 3)
             clear = np.ones(len(rows), dtype=np.bool_)
+            unsure = ~clear
         else:
             hand = Hand.of(gripper, self._settings)
             contacts = _seek(workspace, hand, request.samples, rng, rejected)
-            rows, on_focus, clear = self._answer(workspace, hand, contacts, rejected)
+            rows, on_focus, clear, unsure = self._answer(workspace, hand, contacts, rejected)
         left_out = {reason: count for reason, count in sorted(rejected.counts.items()) if count}
         return ProposeResponse(
             grasps=rows,
             on_focus=on_focus,
             keeps_clear=clear,
+            doubtful=unsure,
             considered=len(rows) + sum(left_out.values()),
             rejected=left_out,
             **_examples(workspace, rejected),
@@ -109,10 +113,11 @@ class GraspProposer:
 
     def _answer(
         self, workspace: Workspace, hand: Hand, contacts: Contacts, rejected: Rejections
-    ) -> tuple[Array, Array, NDArray[np.bool_]]:
-        """Return grasp rows (G, 9), what they hold in focus (G, 3), and if they keep clear (G,)."""
+    ) -> tuple[Array, Array, Mask, Mask]:
+        """Return grasps (G, 9), what they hold in focus (G, 3), which keep clear, are doubtful."""
         if not len(contacts.width):
-            return np.empty((0, 9)), np.empty((0, 3)), np.empty(0, dtype=np.bool_)
+            none = np.empty(0, dtype=np.bool_)
+            return np.empty((0, 9)), np.empty((0, 3)), none, none
         check_deadline()
         tips, palm = support_clearance(contacts.placed, hand, contacts.opening, workspace)
         sight = None
@@ -134,7 +139,8 @@ class GraspProposer:
         shares = [contacts.in_focus, contacts.left_in_focus, contacts.right_in_focus]
         rest = workspace.points[~workspace.in_focus]
         near = comes_near(contacts.placed, hand, contacts.opening, rest, _AWAY)
-        return rows, np.column_stack(shares), ~near
+        unsure = doubtful(workspace, hand, contacts, rows[:, -1], sight)
+        return rows, np.column_stack(shares), ~near, unsure
 
 
 def _rows(

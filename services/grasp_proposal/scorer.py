@@ -18,7 +18,7 @@ Array = NDArray[np.float64]
 _GOOD_ENGAGEMENT = 0.020
 _LEVER = 0.08
 _HIDDEN_THICKNESS = 0.015
-_FRICTION = 0.6
+FRICTION = 0.6
 _THROUGH, _DEEP = (0.15, 0.85), (0.0, 0.2, 0.4, 0.6)
 
 
@@ -104,7 +104,7 @@ def _hold(workspace: Workspace, hand: Hand, contacts: Contacts) -> Array:
     high = np.clip(contacts.engagement, 0.002, hand.finger_length) / 2
     wide = np.clip(contacts.coverage, 0.1, 1.0) * hand.finger_width / 2
     capacity = hand.force * np.stack(
-        [high, 2 * _FRICTION * np.hypot(high, wide) * 0.66, wide], axis=1
+        [high, 2 * FRICTION * np.hypot(high, wide) * 0.66, wide], axis=1
     )
     load = torque / capacity
     return np.asarray(1 / (1 + load[:, 0] ** 2 + 0.25 * load[:, 1] ** 2 + load[:, 2] ** 2))

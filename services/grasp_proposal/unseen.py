@@ -17,6 +17,7 @@ from shared.jit import kernel
 from shared.superquadric import inside_outside
 
 Array = NDArray[np.float64]
+Mask = NDArray[np.bool_]
 
 _THROUGH, _DEEP = (0.1, 0.5, 0.9), (0.0, 0.1, 0.2, 0.35, 0.5, 0.7)
 """Samples of a finger: shares of its thickness and, from the tip, of its length."""
@@ -63,6 +64,31 @@ def meet_unseen(
     return Unseen(sunk.max(axis=0), sunk.min(axis=0), edges[:, 1] - edges[:, 0])
 
 
+def agrees_with_sight(
+    workspace: Workspace, hand: Hand, contacts: Contacts, sight: SightMap | None
+) -> Mask:
+    """Say for which hands (G,) the superquadrics are not where the fingers are seen to have room.
+
+    Where an open finger is inside one, in front of the surface that was seen, the object is not
+    what it is taken for: a bowl's superquadric is solid, and a hand at its rim has a finger in it.
+    """
+    met = np.zeros(len(contacts.width), dtype=np.bool_)
+    for sign in (-1.0, 1.0):
+        samples, _ = finger_samples(hand, contacts, sign, _THROUGH, _DEEP)
+        seen = sight is None or sight.depth_behind(samples) <= 0
+        met |= (_in_bodies(workspace, samples) & seen).any(axis=1)
+    return ~met
+
+
+def _in_bodies(workspace: Workspace, points: Array) -> Mask:
+    """Say which points (..., 3) are inside a superquadric."""
+    outer = transform_points(workspace.outer_from_work, points.reshape(-1, 3))
+    inside = np.zeros(len(outer), dtype=np.bool_)
+    for body in workspace.bodies:
+        inside |= inside_outside(body, outer) < 1
+    return inside.reshape(points.shape[:-1])
+
+
 def _sunk(
     workspace: Workspace, hand: Hand, contacts: Contacts, sight: SightMap, sign: float
 ) -> Array:
@@ -70,8 +96,7 @@ def _sunk(
     samples, above_tip = finger_samples(hand, contacts, sign, _THROUGH, _DEEP)
     hidden = (sight.depth_behind(samples) > 0) & (workspace.heights(samples) > 0)
     met = np.zeros(hidden.shape, dtype=np.bool_)
-    outer = transform_points(workspace.outer_from_work, samples[hidden])
-    met[hidden] = np.any([inside_outside(body, outer) < 1 for body in workspace.bodies], axis=0)
+    met[hidden] = _in_bodies(workspace, samples[hidden])
     return np.asarray(np.where(met, _LEAST + above_tip, 0.0).max(axis=1))
 
 

@@ -15,6 +15,7 @@ from shared.schemas.answer import (
     Scene,
 )
 from shared.schemas.primitive import Deformation
+from shared.schemas.rehearsal import Rehearsal
 from shared.schemas.task import Condition, Explanation, Reason, Region, RuleTrace
 
 
@@ -35,6 +36,7 @@ def grasp_answer(of: GraspAnswer) -> pb.GraspAnswer:
         primitives=map(_primitive, of.primitives),
         grasps=map(_grasp, of.grasps),
         rejected=map(_rejected, of.rejected),
+        rehearsal=maybe(_rehearsal, of.rehearsal),
         explanation=maybe(_explanation, of.explanation),
         scene=_scene(of.scene),
         timings_ms=of.timings_ms,
@@ -92,7 +94,12 @@ def _grasp(of: Grasp) -> pb.Grasp:
         retreat=pose(of.retreat),
         width=of.width,
         score=of.score,
+        rehearsed=None if of.rehearsed is None else number(pb.Outcome, of.rehearsed),
     )
+
+
+def _rehearsal(of: Rehearsal) -> pb.Rehearsal:
+    return pb.Rehearsal(tried=of.tried, stopped=of.stopped)
 
 
 def _rejected(of: RejectedGrasp) -> pb.RejectedGrasp:

@@ -24,6 +24,7 @@ _CHOICES = {
     "rule_set": pb.RuleSet,
     "input": pb.Input,
     "method": pb.Method,
+    "rehearsal": pb.Rehearsing,
 }
 
 
@@ -119,8 +120,11 @@ def execute(asked: pb.ExecuteRequest) -> HttpRequest:
     fields["primitives"] = [list(each.parameters) for each in asked.primitives]
     if asked.HasField("plane"):
         fields["plane"] = geometry.plane_fields(asked.plane)
-    if asked.HasField("up"):
-        fields["up"] = geometry.vector_fields(asked.up)
+    fields |= {
+        name: geometry.vector_fields(getattr(asked, name))
+        for name in ("up", "heading")
+        if asked.HasField(name)
+    }
     if (actor := text(pb.Actor, asked.actor, "actor")) is not None:
         fields["actor"] = actor
     message = np.frombuffer(_json(fields).encode(), dtype=np.uint8)

@@ -10,6 +10,7 @@ import numpy as np
 from numpy.typing import ArrayLike
 
 from shared.schemas.primitive import EmsParameters, Method
+from shared.schemas.rehearsal import Rehearsing
 from shared.schemas.scene import InputKind
 from shared.schemas.task import RuleSet, Version
 from shared.wire import Message
@@ -34,6 +35,8 @@ class GraspParameters(TypedDict, total=False):
     recovery: EmsParameters | Mapping[str, Any] | str | None
     """Parameters of the method `ems`: a message, or a mapping or JSON of its names."""
     explain: bool
+    rehearsal: Rehearsing
+    """Whether grasps are tried in simulation before they are answered."""
     rejected: int
     """How many hand poses that were left out the answer holds, `answer.rejected`; 0: none."""
     frame_id: str

@@ -7,9 +7,11 @@ from typing import Annotated
 
 from pydantic import Field
 
+from shared.schemas.execution import Outcome
 from shared.schemas.fields import Direction
 from shared.schemas.grasp import Pose
 from shared.schemas.primitive import Method, Primitive
+from shared.schemas.rehearsal import Rehearsal
 from shared.schemas.rejection import RejectionCode
 from shared.schemas.route import Route
 from shared.schemas.scene import SupportPlane
@@ -34,6 +36,8 @@ class Grasp(Message):
     width: float
     """Opening in metres that the grasp needs."""
     score: Annotated[float, Field(ge=0, le=1)]
+    rehearsed: Annotated[Outcome | None, Field(exclude_if=lambda outcome: outcome is None)] = None
+    """What came of it in simulation, on the recovered primitives, where it was tried."""
 
 
 class Rejection(Message):
@@ -87,6 +91,8 @@ class GraspAnswer(Message):
     grasps: tuple[Grasp, ...]
     rejected: Annotated[tuple[RejectedGrasp, ...], Field(exclude_if=operator.not_)] = ()
     """Examples of hand poses that were left out, where some were asked for."""
+    rehearsal: Annotated[Rehearsal | None, Field(exclude_if=lambda held: held is None)] = None
+    """How grasps were tried before they were answered, where that was needed."""
     explanation: Explanation | None
     scene: Scene
     timings_ms: dict[str, float]

@@ -62,6 +62,9 @@ class ExecuteRequest(Message):
     `hand`: the gripper flies by itself. None: the arm where there is one."""
     strict: bool = False
     """Shake and tilt the object after the lift, too."""
+    heading: Direction | None = None
+    """Where the robot faces: its `strict` shaking goes to its left and right, its tilting forward.
+    None, or straight up or down: as the grasp comes, so that the world follows the grasp."""
     seed: Annotated[int, Field(ge=0, lt=2**32)] = 0
     animate: bool = False
     """Film what happens; changes nothing about it, but takes a few seconds longer."""

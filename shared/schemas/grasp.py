@@ -65,6 +65,10 @@ class ProposeResponse(Message):
     keeps_clear: Mask
     """For each grasp: on its way in the hand stays 10 mm away from the object outside the focus,
     so that it leaves the parts free that the task needs."""
+    doubtful: Mask
+    """For each grasp: whether it holds is in doubt, because its score is low or the weight turns
+    the object between the pads, and a simulation would tell, because the superquadrics are not
+    where the open fingers are seen to have room."""
     considered: int
     rejected: dict[str, int]
     """How many hand poses were left out, by reason."""

@@ -20,6 +20,7 @@ from shared.wire.npz import write_npz
 from tests.faults.conftest import DEADLINE_S, SLACK_S, Backend
 from tests.faults.faulty import Exchange, Fault
 from tests.support.asking import failed
+from tests.support.samples import sample_path
 
 every_stage = pytest.mark.parametrize("stage", STAGES)
 AT_ONCE_S = DEADLINE_S - 0.1
@@ -277,3 +278,39 @@ def test_what_does_not_need_the_stage_goes_on(backend: Backend) -> None:
         assert backend.http.get("/tasks").status_code == 200
         assert backend.http.get("/grippers").status_code == 200
         backend.works("execution")
+
+
+def heavy(backend: Backend, rehearsal: str) -> tuple[httpx.Response, float]:
+    """Ask about a saucepan, whose weight turns it between the pads."""
+    started = time.monotonic()
+    response = backend.http.post(
+        "/grasp",
+        params={"task": "cooking", "rehearsal": rehearsal},
+        content=sample_path("saucepan").read_bytes(),
+        headers={"content-type": NPZ},
+    )
+    return response, time.monotonic() - started
+
+
+@pytest.mark.parametrize(
+    ("fault", "code"),
+    [
+        (gone, "stage_unavailable"),
+        (half_an_archive, "stage_unavailable"),
+        (a_fault_of_its_own, "stage_unavailable"),
+        (hung, "deadline_exceeded"),
+    ],
+)
+def test_grasps_are_answered_unrehearsed_where_the_simulation_fails(
+    backend: Backend, fault: Fault, code: str
+) -> None:
+    with backend.stages["execution"].failing(fault):
+        response, taken = heavy(backend, "auto")
+        refused, _ = heavy(backend, "always")
+    assert response.status_code == 200, response.text
+    assert response.json()["rehearsal"] == {"tried": 0, "stopped": code}
+    assert response.json()["grasps"]
+    assert taken < DEADLINE_S, "half of what is left of its time goes into the rehearsal"
+    status = {"stage_unavailable": 503, "deadline_exceeded": 504}[code]
+    failed(refused, status, code, "execution")
+    backend.works("execution")

@@ -12,6 +12,7 @@ from numpy.typing import NDArray
 
 from services.grasp_proposal.boxes import support_clearance
 from services.grasp_proposal.contacts import find_contacts
+from services.grasp_proposal.doubt import doubtful
 from services.grasp_proposal.hand import Hand
 from services.grasp_proposal.learned import inputs
 from services.grasp_proposal.placements import Placements
@@ -47,6 +48,10 @@ class Lessons:
         What came of them.
     moved : (G,) bool array
         They are not where they were proposed.
+    score : (G,) array
+        Of the answer, of where they were proposed.
+    rehearsed : (G,) str array
+        What came of them on the superquadrics; empty where that is not known or tells nothing.
     geometric : (G,) array
         The score of the named factors.
     view, number : (G,) int arrays
@@ -59,6 +64,8 @@ class Lessons:
     lifted: Mask
     held: Mask
     moved: Mask
+    score: Array
+    rehearsed: NDArray[np.str_]
     geometric: Array
     view: NDArray[np.intp]
     number: NDArray[np.intp]
@@ -137,12 +144,17 @@ def _lessons(arrays: Arrays, question: int, mine: Mask, hand: Hand) -> Lessons:
         sight = SightMap.of(workspace.points, workspace.viewpoint)
     images, numbers = inputs(workspace, hand, contacts, palm, tips, sight)
     rows = int(some.sum())
+    scores = arrays["grasps"][mine][some][:, -1]
+    told = doubtful(workspace, hand, contacts, scores, sight)
+    rehearsed = arrays.get("rehearsed", np.full(len(mine), ""))
     return Lessons(
         images=images,
         numbers=numbers,
         lifted=arrays["lifted"][mine][some],
         held=arrays["held"][mine][some],
         moved=arrays["moved"][mine][some],
+        score=scores,
+        rehearsed=np.where(told, rehearsed[mine][some], ""),
         geometric=score(workspace, hand, contacts, palm, sight),
         view=np.zeros(rows, dtype=np.intp),
         number=np.full(rows, int(arrays["number"])),

@@ -6,7 +6,7 @@ from typing import Any, NamedTuple
 
 import numpy as np
 from numpy.typing import NDArray
-from scipy.optimize import minimize
+from scipy.optimize import Bounds, minimize
 
 from services.grasp_proposal.learned import sigmoid
 from services.grasp_proposal.measures import torques
@@ -86,27 +86,36 @@ def fit_torque(logits: Array, torque: Array, held: NDArray[np.bool_], view: Rows
     ValueError
         Higher logits are no better.
     """
-    kept, lost, share = _pairs(held, view)
-    if not len(kept):
-        return 0.0
     known = np.column_stack([logits, -torque])
-    difference = known[kept] - known[lost]
+    weights = fit_pairs(known, held, view, Bounds([-np.inf, 0.0], [np.inf, np.inf]))
+    if not weights.any():
+        return 0.0
+    if weights[0] <= 0:
+        raise ValueError(f"higher logits are no better: slope {weights[0]:.3g}")
+    return float(weights[1] / weights[0])
+
+
+def fit_pairs(known: Array, good: NDArray[np.bool_], view: Rows, bounds: Bounds) -> Array:
+    """Return weights (K,) of what is known (G, K) that best tell good grasps from bad ones.
+
+    Within questions, `view` (G,), every one counted once; zeros where none has both kinds.
+    """
+    better, worse, share = pairs(good, view)
+    if not len(better):
+        return np.zeros(known.shape[1])
+    difference = known[better] - known[worse]
 
     def loss(weights: Array) -> tuple[float, Array]:
         margin = difference @ weights
         wrong = share * sigmoid(-margin)
         return float(share @ np.logaddexp(0, -margin)), -difference.T @ wrong
 
-    weights = minimize(
-        loss, np.array([1.0, 0.0]), jac=True, method="L-BFGS-B", bounds=[(None, None), (0, None)]
-    ).x
-    if weights[0] <= 0:
-        raise ValueError(f"higher logits are no better: slope {weights[0]:.3g}")
-    return float(weights[1] / weights[0])
+    start = np.eye(known.shape[1])[0]
+    return np.asarray(minimize(loss, start, jac=True, method="L-BFGS-B", bounds=bounds).x)
 
 
-def _pairs(held: NDArray[np.bool_], view: Rows) -> tuple[Rows, Rows, Array]:
-    """Return the rows (P,) of what kept and of what lost, and the share (P,) of each pair."""
+def pairs(held: NDArray[np.bool_], view: Rows) -> tuple[Rows, Rows, Array]:
+    """Return rows (P,) of what kept, of what lost in the same question, and each pair's share."""
     kept, lost, share = [], [], []
     for each in np.unique(view):
         mine = np.flatnonzero(view == each)

@@ -32,6 +32,13 @@ class Method(int, metaclass=_enum_type_wrapper.EnumTypeWrapper):
     METHOD_PARTS: _ClassVar[Method]
     METHOD_EMS: _ClassVar[Method]
 
+class Rehearsing(int, metaclass=_enum_type_wrapper.EnumTypeWrapper):
+    __slots__ = ()
+    REHEARSING_UNSPECIFIED: _ClassVar[Rehearsing]
+    REHEARSING_AUTO: _ClassVar[Rehearsing]
+    REHEARSING_NEVER: _ClassVar[Rehearsing]
+    REHEARSING_ALWAYS: _ClassVar[Rehearsing]
+
 class ShapeClass(int, metaclass=_enum_type_wrapper.EnumTypeWrapper):
     __slots__ = ()
     SHAPE_CLASS_UNSPECIFIED: _ClassVar[ShapeClass]
@@ -68,6 +75,10 @@ INPUT_OBJECT: Input
 METHOD_UNSPECIFIED: Method
 METHOD_PARTS: Method
 METHOD_EMS: Method
+REHEARSING_UNSPECIFIED: Rehearsing
+REHEARSING_AUTO: Rehearsing
+REHEARSING_NEVER: Rehearsing
+REHEARSING_ALWAYS: Rehearsing
 SHAPE_CLASS_UNSPECIFIED: ShapeClass
 SHAPE_CLASS_CUBOID: ShapeClass
 SHAPE_CLASS_CYLINDER: ShapeClass
@@ -190,7 +201,7 @@ class EmsParameters(_message.Message):
     def __init__(self, outlier_ratio: _Optional[float] = ..., max_iterations: _Optional[int] = ..., tolerance: _Optional[float] = ..., relative_tolerance: _Optional[float] = ..., max_switches: _Optional[int] = ..., adaptive_upper_bound: _Optional[bool] = ..., eps: _Optional[float] = ..., min_points: _Optional[int] = ...) -> None: ...
 
 class GraspRequest(_message.Message):
-    __slots__ = ("task", "points", "depth", "file", "reasoning", "rule_set", "input", "viewpoint", "target", "gripper", "max_grasps", "seed", "method", "recovery", "explain", "frame_id", "rejected", "per_point")
+    __slots__ = ("task", "points", "depth", "file", "reasoning", "rule_set", "input", "viewpoint", "target", "gripper", "max_grasps", "seed", "method", "recovery", "explain", "frame_id", "rejected", "rehearsal", "per_point")
     TASK_FIELD_NUMBER: _ClassVar[int]
     POINTS_FIELD_NUMBER: _ClassVar[int]
     DEPTH_FIELD_NUMBER: _ClassVar[int]
@@ -208,6 +219,7 @@ class GraspRequest(_message.Message):
     EXPLAIN_FIELD_NUMBER: _ClassVar[int]
     FRAME_ID_FIELD_NUMBER: _ClassVar[int]
     REJECTED_FIELD_NUMBER: _ClassVar[int]
+    REHEARSAL_FIELD_NUMBER: _ClassVar[int]
     PER_POINT_FIELD_NUMBER: _ClassVar[int]
     task: str
     points: PointCloud
@@ -226,8 +238,9 @@ class GraspRequest(_message.Message):
     explain: bool
     frame_id: str
     rejected: int
+    rehearsal: Rehearsing
     per_point: bool
-    def __init__(self, task: _Optional[str] = ..., points: _Optional[_Union[PointCloud, _Mapping]] = ..., depth: _Optional[_Union[DepthImage, _Mapping]] = ..., file: _Optional[_Union[CloudFile, _Mapping]] = ..., reasoning: _Optional[_Union[Reasoning, str]] = ..., rule_set: _Optional[_Union[RuleSet, str]] = ..., input: _Optional[_Union[Input, str]] = ..., viewpoint: _Optional[_Union[Vector3, _Mapping]] = ..., target: _Optional[_Union[Vector3, _Mapping]] = ..., gripper: _Optional[str] = ..., max_grasps: _Optional[int] = ..., seed: _Optional[int] = ..., method: _Optional[_Union[Method, str]] = ..., recovery: _Optional[_Union[EmsParameters, _Mapping]] = ..., explain: _Optional[bool] = ..., frame_id: _Optional[str] = ..., rejected: _Optional[int] = ..., per_point: _Optional[bool] = ...) -> None: ...
+    def __init__(self, task: _Optional[str] = ..., points: _Optional[_Union[PointCloud, _Mapping]] = ..., depth: _Optional[_Union[DepthImage, _Mapping]] = ..., file: _Optional[_Union[CloudFile, _Mapping]] = ..., reasoning: _Optional[_Union[Reasoning, str]] = ..., rule_set: _Optional[_Union[RuleSet, str]] = ..., input: _Optional[_Union[Input, str]] = ..., viewpoint: _Optional[_Union[Vector3, _Mapping]] = ..., target: _Optional[_Union[Vector3, _Mapping]] = ..., gripper: _Optional[str] = ..., max_grasps: _Optional[int] = ..., seed: _Optional[int] = ..., method: _Optional[_Union[Method, str]] = ..., recovery: _Optional[_Union[EmsParameters, _Mapping]] = ..., explain: _Optional[bool] = ..., frame_id: _Optional[str] = ..., rejected: _Optional[int] = ..., rehearsal: _Optional[_Union[Rehearsing, str]] = ..., per_point: _Optional[bool] = ...) -> None: ...
 
 class Deformation(_message.Message):
     __slots__ = ("taper", "bend")
@@ -280,18 +293,28 @@ class Reason(_message.Message):
     def __init__(self, code: _Optional[str] = ..., message: _Optional[str] = ...) -> None: ...
 
 class Grasp(_message.Message):
-    __slots__ = ("pose", "pregrasp", "retreat", "width", "score")
+    __slots__ = ("pose", "pregrasp", "retreat", "width", "score", "rehearsed")
     POSE_FIELD_NUMBER: _ClassVar[int]
     PREGRASP_FIELD_NUMBER: _ClassVar[int]
     RETREAT_FIELD_NUMBER: _ClassVar[int]
     WIDTH_FIELD_NUMBER: _ClassVar[int]
     SCORE_FIELD_NUMBER: _ClassVar[int]
+    REHEARSED_FIELD_NUMBER: _ClassVar[int]
     pose: Pose
     pregrasp: Pose
     retreat: Pose
     width: float
     score: float
-    def __init__(self, pose: _Optional[_Union[Pose, _Mapping]] = ..., pregrasp: _Optional[_Union[Pose, _Mapping]] = ..., retreat: _Optional[_Union[Pose, _Mapping]] = ..., width: _Optional[float] = ..., score: _Optional[float] = ...) -> None: ...
+    rehearsed: Outcome
+    def __init__(self, pose: _Optional[_Union[Pose, _Mapping]] = ..., pregrasp: _Optional[_Union[Pose, _Mapping]] = ..., retreat: _Optional[_Union[Pose, _Mapping]] = ..., width: _Optional[float] = ..., score: _Optional[float] = ..., rehearsed: _Optional[_Union[Outcome, str]] = ...) -> None: ...
+
+class Rehearsal(_message.Message):
+    __slots__ = ("tried", "stopped")
+    TRIED_FIELD_NUMBER: _ClassVar[int]
+    STOPPED_FIELD_NUMBER: _ClassVar[int]
+    tried: int
+    stopped: str
+    def __init__(self, tried: _Optional[int] = ..., stopped: _Optional[str] = ...) -> None: ...
 
 class Rejection(_message.Message):
     __slots__ = ("code", "message")
@@ -405,7 +428,7 @@ class PointLabels(_message.Message):
     def __init__(self, primitive: _Optional[bytes] = ..., region: _Optional[bytes] = ...) -> None: ...
 
 class GraspAnswer(_message.Message):
-    __slots__ = ("request_id", "task", "reasoning", "rule_set", "gripper", "seed", "frame_id", "found", "reason", "region", "alternatives", "primitives", "grasps", "explanation", "scene", "timings_ms", "points", "rejected")
+    __slots__ = ("request_id", "task", "reasoning", "rule_set", "gripper", "seed", "frame_id", "found", "reason", "region", "alternatives", "primitives", "grasps", "explanation", "scene", "timings_ms", "points", "rejected", "rehearsal")
     class TimingsMsEntry(_message.Message):
         __slots__ = ("key", "value")
         KEY_FIELD_NUMBER: _ClassVar[int]
@@ -431,6 +454,7 @@ class GraspAnswer(_message.Message):
     TIMINGS_MS_FIELD_NUMBER: _ClassVar[int]
     POINTS_FIELD_NUMBER: _ClassVar[int]
     REJECTED_FIELD_NUMBER: _ClassVar[int]
+    REHEARSAL_FIELD_NUMBER: _ClassVar[int]
     request_id: str
     task: str
     reasoning: Reasoning
@@ -449,7 +473,8 @@ class GraspAnswer(_message.Message):
     timings_ms: _containers.ScalarMap[str, float]
     points: PointLabels
     rejected: _containers.RepeatedCompositeFieldContainer[RejectedGrasp]
-    def __init__(self, request_id: _Optional[str] = ..., task: _Optional[str] = ..., reasoning: _Optional[_Union[Reasoning, str]] = ..., rule_set: _Optional[_Union[RuleSet, str]] = ..., gripper: _Optional[str] = ..., seed: _Optional[int] = ..., frame_id: _Optional[str] = ..., found: _Optional[bool] = ..., reason: _Optional[_Union[Reason, _Mapping]] = ..., region: _Optional[_Union[Region, _Mapping]] = ..., alternatives: _Optional[_Iterable[_Union[Region, _Mapping]]] = ..., primitives: _Optional[_Iterable[_Union[Primitive, _Mapping]]] = ..., grasps: _Optional[_Iterable[_Union[Grasp, _Mapping]]] = ..., explanation: _Optional[_Union[Explanation, _Mapping]] = ..., scene: _Optional[_Union[Scene, _Mapping]] = ..., timings_ms: _Optional[_Mapping[str, float]] = ..., points: _Optional[_Union[PointLabels, _Mapping]] = ..., rejected: _Optional[_Iterable[_Union[RejectedGrasp, _Mapping]]] = ...) -> None: ...
+    rehearsal: Rehearsal
+    def __init__(self, request_id: _Optional[str] = ..., task: _Optional[str] = ..., reasoning: _Optional[_Union[Reasoning, str]] = ..., rule_set: _Optional[_Union[RuleSet, str]] = ..., gripper: _Optional[str] = ..., seed: _Optional[int] = ..., frame_id: _Optional[str] = ..., found: _Optional[bool] = ..., reason: _Optional[_Union[Reason, _Mapping]] = ..., region: _Optional[_Union[Region, _Mapping]] = ..., alternatives: _Optional[_Iterable[_Union[Region, _Mapping]]] = ..., primitives: _Optional[_Iterable[_Union[Primitive, _Mapping]]] = ..., grasps: _Optional[_Iterable[_Union[Grasp, _Mapping]]] = ..., explanation: _Optional[_Union[Explanation, _Mapping]] = ..., scene: _Optional[_Union[Scene, _Mapping]] = ..., timings_ms: _Optional[_Mapping[str, float]] = ..., points: _Optional[_Union[PointLabels, _Mapping]] = ..., rejected: _Optional[_Iterable[_Union[RejectedGrasp, _Mapping]]] = ..., rehearsal: _Optional[_Union[Rehearsal, _Mapping]] = ...) -> None: ...
 
 class RequestName(_message.Message):
     __slots__ = ("request_id",)
@@ -638,7 +663,7 @@ class Faces(_message.Message):
     def __init__(self, indices: _Optional[_Iterable[int]] = ...) -> None: ...
 
 class ExecuteRequest(_message.Message):
-    __slots__ = ("pose", "width", "primitives", "vertices", "faces", "object_pose", "mass", "plane", "up", "gripper", "actor", "strict", "seed", "animate", "motion", "highlight")
+    __slots__ = ("pose", "width", "primitives", "vertices", "faces", "object_pose", "mass", "plane", "up", "gripper", "actor", "strict", "seed", "animate", "motion", "highlight", "heading")
     POSE_FIELD_NUMBER: _ClassVar[int]
     WIDTH_FIELD_NUMBER: _ClassVar[int]
     PRIMITIVES_FIELD_NUMBER: _ClassVar[int]
@@ -655,6 +680,7 @@ class ExecuteRequest(_message.Message):
     ANIMATE_FIELD_NUMBER: _ClassVar[int]
     MOTION_FIELD_NUMBER: _ClassVar[int]
     HIGHLIGHT_FIELD_NUMBER: _ClassVar[int]
+    HEADING_FIELD_NUMBER: _ClassVar[int]
     pose: Pose
     width: float
     primitives: _containers.RepeatedCompositeFieldContainer[Superquadric]
@@ -671,7 +697,8 @@ class ExecuteRequest(_message.Message):
     animate: bool
     motion: bool
     highlight: _containers.RepeatedScalarFieldContainer[bool]
-    def __init__(self, pose: _Optional[_Union[Pose, _Mapping]] = ..., width: _Optional[float] = ..., primitives: _Optional[_Iterable[_Union[Superquadric, _Mapping]]] = ..., vertices: _Optional[_Union[PointCloud, _Mapping]] = ..., faces: _Optional[_Union[Faces, _Mapping]] = ..., object_pose: _Optional[_Union[Pose, _Mapping]] = ..., mass: _Optional[float] = ..., plane: _Optional[_Union[SupportPlane, _Mapping]] = ..., up: _Optional[_Union[Vector3, _Mapping]] = ..., gripper: _Optional[str] = ..., actor: _Optional[_Union[Actor, str]] = ..., strict: _Optional[bool] = ..., seed: _Optional[int] = ..., animate: _Optional[bool] = ..., motion: _Optional[bool] = ..., highlight: _Optional[_Iterable[bool]] = ...) -> None: ...
+    heading: Vector3
+    def __init__(self, pose: _Optional[_Union[Pose, _Mapping]] = ..., width: _Optional[float] = ..., primitives: _Optional[_Iterable[_Union[Superquadric, _Mapping]]] = ..., vertices: _Optional[_Union[PointCloud, _Mapping]] = ..., faces: _Optional[_Union[Faces, _Mapping]] = ..., object_pose: _Optional[_Union[Pose, _Mapping]] = ..., mass: _Optional[float] = ..., plane: _Optional[_Union[SupportPlane, _Mapping]] = ..., up: _Optional[_Union[Vector3, _Mapping]] = ..., gripper: _Optional[str] = ..., actor: _Optional[_Union[Actor, str]] = ..., strict: _Optional[bool] = ..., seed: _Optional[int] = ..., animate: _Optional[bool] = ..., motion: _Optional[bool] = ..., highlight: _Optional[_Iterable[bool]] = ..., heading: _Optional[_Union[Vector3, _Mapping]] = ...) -> None: ...
 
 class Phase(_message.Message):
     __slots__ = ("name", "simulated_s")

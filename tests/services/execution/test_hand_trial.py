@@ -5,6 +5,7 @@ from __future__ import annotations
 import numpy as np
 import pytest
 
+from shared.geometry.rotation import matrix_from_quaternion
 from shared.geometry.se3 import pose_from_matrix
 from shared.grippers import load_grippers
 from shared.schemas.execution import ExecuteRequest, ExecuteResponse
@@ -171,3 +172,22 @@ def test_the_hand_is_filmed_and_the_film_changes_nothing() -> None:
     assert answer.animation is not None
     assert bytes(answer.animation[:6]) == b"GIF89a"
     assert answer.model_copy(update={"animation": None}) == by_hand(asked)
+
+
+def test_where_the_robot_faces_decides_which_way_it_tilts() -> None:
+    """A long bar held by its end hangs; only one of the tilts takes it across the pads."""
+    bar = box((0.15, 0.01, 0.01), (0.12, 0, 0.01))
+    asked = request((0, 0, 0.01), from_above(), bar, width=0.02, strict=True, motion=True)
+    as_it_comes = by_hand(asked)
+    ends = {}
+    for name, heading in {"x": (1, 0, 0), "y": (0, 1, 0), "back": (-1, 0, 0)}.items():
+        answer = by_hand(asked, heading=tuple(map(float, heading)))
+        assert answer.motion_hand is not None
+        ends[name] = matrix_from_quaternion(answer.motion_hand[-1, 3:7])[:, 2]
+    assert as_it_comes.motion_hand is not None
+    comes = matrix_from_quaternion(as_it_comes.motion_hand[-1, 3:7])[:, 2]
+    lean = np.sin(np.radians(60))
+    np.testing.assert_allclose(ends["x"], [-lean, 0, -0.5], atol=0.03)
+    np.testing.assert_allclose(ends["y"], [0, -lean, -0.5], atol=0.03)
+    np.testing.assert_allclose(ends["back"], [lean, 0, -0.5], atol=0.03)
+    np.testing.assert_allclose(comes, ends["x"], atol=0.03)

@@ -78,3 +78,22 @@ def test_several_primitives_are_several_parts() -> None:
     primitives = (STANDING_SUPERQUADRIC, upper)
     scene = scene_from_request(request((0, 0, 0.1), from_side(), primitives=primitives))
     assert len(scene.parts) == 2
+
+
+@pytest.mark.parametrize("turn", [0.0, 1.1, np.pi])
+def test_the_side_is_to_the_left_of_where_the_robot_faces(turn: float) -> None:
+    """In a world whose x is the approach; the camera does not matter."""
+    heading = np.array([np.cos(0.7 + turn), np.sin(0.7 + turn), -0.8])
+    for camera in (np.eye(4), CAMERA_FROM_WORLD):
+        faces = tuple((camera[:3, :3] @ (2 * heading)).tolist())
+        asked = request((0, 0, 0.1), from_side(0.7), cylinder(), seen_from=camera, heading=faces)
+        side = scene_from_request(asked).side
+        assert side == pytest.approx([-np.sin(turn), np.cos(turn), 0.0], abs=1e-6)
+
+
+@pytest.mark.parametrize("heading", [None, (0.0, 0.0, -3.0)])
+def test_without_a_heading_the_side_is_that_of_the_approach(
+    heading: tuple[float, float, float] | None,
+) -> None:
+    asked = request((0, 0, 0.1), from_side(0.7), cylinder(), heading=heading)
+    assert scene_from_request(asked).side.tolist() == [0.0, 1.0, 0.0]

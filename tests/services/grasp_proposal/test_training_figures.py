@@ -123,6 +123,8 @@ def test_torque_counts_beyond_what_is_usual_for_an_object() -> None:
         lifted=happened,
         held=happened,
         moved=np.zeros(len(view), dtype=bool),
+        score=np.full(len(view), 0.5),
+        rehearsed=np.full(len(view), ""),
         geometric=np.zeros(len(view)),
         view=view,
         number=view,

@@ -1,0 +1,106 @@
+"""`python -m services.grasp_proposal.training.rehearsal TRIALS`: what a rehearsal tells.
+
+TRIALS is what `python -m experiments.trials` writes, best of objects that the shipped network
+never saw: `--first` beyond the rounds that it was trained on.
+"""
+
+from __future__ import annotations
+
+import argparse
+import logging
+from collections.abc import Mapping
+from pathlib import Path
+
+import numpy as np
+from numpy.typing import NDArray
+from scipy.optimize import Bounds, brentq
+
+from services.grasp_proposal.learned import sigmoid
+from services.grasp_proposal.training.lessons import Lessons, read_lessons
+from services.grasp_proposal.training.order import fit_pairs, pairs
+
+Array = NDArray[np.float64]
+
+logger = logging.getLogger(__name__)
+
+OUTCOMES = ("held", "slipped_in_shake", "lost")
+"""All others count as the last."""
+_TINY = 1e-9
+
+
+def fit_evidence(logits: Array, came: NDArray[np.intp], lessons: Lessons) -> Array:
+    """Return what a rehearsal's outcome adds to the logit of lifting (3,), by `OUTCOMES`.
+
+    How far the outcomes are apart is what best orders the grasps of one question, for lifting
+    and for keeping, whose mean it is (`fit_pairs`); where they lie makes the probabilities of
+    lifting true on the whole.
+
+    Parameters
+    ----------
+    logits : (G,) array
+        Of lifting, before the rehearsal.
+    came : (G,) int array
+        Index of the outcome.
+    lessons : Lessons
+        What really came of the G grasps.
+    """
+    known = np.column_stack([logits, came == 0, came == 1]).astype(np.float64)
+    bounds = Bounds([_TINY, -np.inf, -np.inf], [np.inf, np.inf, np.inf])
+    steps = []
+    for truth in (lessons.lifted, lessons.held):
+        weights = fit_pairs(known, truth, lessons.view, bounds)
+        steps.append(weights[1:] / weights[0])
+    step = np.append(np.mean(steps, axis=0), 0.0)
+    often = float(lessons.lifted.mean())
+    centre = brentq(lambda at: sigmoid(logits + step[came] + at).mean() - often, -10, 10)
+    return np.asarray(step + centre)
+
+
+def right_order(order: Array, truth: NDArray[np.bool_], view: NDArray[np.intp]) -> float:
+    """Return the share of pairs of one question that an order (G,) has the right way round."""
+    good, bad, share = pairs(truth, view)
+    better = (order[good] > order[bad]) + 0.5 * (order[good] == order[bad])
+    return float(share @ better)
+
+
+def report(lessons: Lessons) -> str:
+    """Return, as Markdown, what rehearsals tell, and how well with what share of pairs."""
+    mine = lessons.take(lessons.rehearsed != "")
+    scores = np.clip(mine.score, _TINY, 1 - _TINY)
+    logits = np.log(scores / (1 - scores))
+    came = np.array([OUTCOMES.index(each) if each in OUTCOMES else 2 for each in mine.rehearsed])
+    evidence = fit_evidence(logits, came, mine)
+    lines = [
+        f"{len(mine)} of {len(lessons)} grasps are in doubt and can be rehearsed.",
+        "",
+        "| rehearsed | grasps | lifted | kept | adds to the logit |",
+        "| --- | --- | --- | --- | --- |",
+    ]
+    for index, name in enumerate(OUTCOMES):
+        some = mine.take(came == index)
+        lines.append(
+            f"| {name} | {len(some)} | {some.lifted.mean():.2f} | {some.held.mean():.2f} "
+            f"| {evidence[index]:+.2f} |"
+        )
+    orders: Mapping[str, Array] = {
+        "score": logits,
+        "rehearsal": -came.astype(np.float64),
+        "both": logits + evidence[came],
+    }
+    lines += ["", "| ordered by | lifting | keeping |", "| --- | --- | --- |"]
+    for name, order in orders.items():
+        shares = [right_order(order, truth, mine.view) for truth in (mine.lifted, mine.held)]
+        lines.append(f"| {name} | {shares[0]:.3f} | {shares[1]:.3f} |")
+    return "\n".join(lines)
+
+
+def main(arguments: list[str] | None = None) -> None:
+    """Print the report."""
+    parser = argparse.ArgumentParser(description=__doc__.splitlines()[0])
+    parser.add_argument("trials", type=Path)
+    logging.basicConfig(level=logging.INFO, format="%(message)s")
+    logger.info(report(read_lessons(parser.parse_args(arguments).trials)))
+
+
+if __name__ == "__main__":
+    main()
