@@ -23,6 +23,14 @@ class Input(StrEnum):
     object = "object"
 
 
+class Rehearsal(StrEnum):
+    """Which grasps are tried in simulation before they are answered."""
+
+    auto = "auto"
+    never = "never"
+    always = "always"
+
+
 class LogLevel(StrEnum):
     """The least that is logged."""
 
@@ -36,6 +44,9 @@ ReasoningOption = Annotated[Reasoning, typer.Option(help="v1: rule per task; v2:
 InputOption = Annotated[Input, typer.Option("--input", help="scene: find the object first")]
 GripperOption = Annotated[str, typer.Option(help="A name from GET /grippers")]
 MaxGraspsOption = Annotated[int, typer.Option(min=0, max=100)]
+RehearsalOption = Annotated[
+    Rehearsal, typer.Option(help="Try grasps in simulation first; auto: those in doubt")
+]
 SeedOption = Annotated[int, typer.Option(min=0)]
 _VIEWPOINT = typer.Option(help="Sensor position, as [x, y, z]")
 ViewpointOption = Annotated[str, _VIEWPOINT]

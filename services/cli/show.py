@@ -66,7 +66,9 @@ def _primitives(answer: GraspAnswer) -> Table:
 def _grasps(answer: GraspAnswer) -> Table:
     title = f"Grasps, frame {answer.frame_id}, gripper {answer.gripper}"
     table = Table(title=title, title_justify="left", box=box.SIMPLE_HEAD)
-    for name in ("#", "position (m)", "quaternion xyzw", "width (mm)", "score"):
+    columns = ("#", "position (m)", "quaternion xyzw", "width (mm)", "score")
+    rehearsed = any(each.rehearsed for each in answer.grasps)
+    for name in (*columns, "rehearsed") if rehearsed else columns:
         table.add_column(name)
     for number, each in enumerate(answer.grasps):
         table.add_row(
@@ -75,5 +77,6 @@ def _grasps(answer: GraspAnswer) -> Table:
             " ".join(f"{value:+.3f}" for value in each.pose.quaternion),
             f"{1e3 * each.width:.0f}",
             f"{each.score:.2f}",
+            *([(each.rehearsed or "").replace("_", " ")] if rehearsed else ()),
         )
     return table

@@ -47,7 +47,7 @@ class GraspParameters(Message):
     recovery: EmsParameters | None = None
     """Parameters of the method `ems`, instead of the backend's own."""
     explain: bool = True
-    rehearsal: Rehearsing = "auto"
+    rehearsal: Rehearsing = "never"
     """Whether grasps are tried in simulation before they are answered."""
     rejected: Examples = 0
     """So many hand poses that were considered and left out are in the answer, with the reason."""

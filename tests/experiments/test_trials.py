@@ -131,3 +131,44 @@ def test_views_that_cannot_be_answered_are_left_out_and_not_asked_again(tmp_path
 def test_a_backend_that_never_gets_ready_is_an_error() -> None:
     with pytest.raises(StageUnavailable, match="not ready after 0 s"):
         wait_until_ready("http://127.0.0.1:9", 0.0)
+
+
+@pytest.mark.parametrize("comes_to_an_end", [True, False])
+def test_each_grasp_is_rehearsed_on_what_was_recovered(
+    sparge: Sparge, comes_to_an_end: bool
+) -> None:
+    scene = draw_scene(body_of(draw_object("hammer", 0, 0)), 0, 0)
+    rehearsals: list[ExecuteRequest] = []
+
+    def judge(request: ExecuteRequest) -> ExecuteResponse:
+        on_mesh = request.vertices is not None
+        if not on_mesh:
+            rehearsals.append(request)
+            if not comes_to_an_end:
+                raise DeadlineExceeded("the simulation took too long")
+        return ExecuteResponse(
+            success=not on_mesh,
+            lifted=not on_mesh,
+            outcome="slipped_in_lift" if on_mesh else "held",
+            message="",
+            lift_height=0.0,
+            phases=(),
+        )
+
+    arrays = try_out(
+        sparge,
+        judge,
+        scene,
+        blind=("handover",),
+        grippers=("panda",),
+        each=2,
+        seed=0,
+    )
+    assert arrays is not None
+    assert len(rehearsals) == len(arrays["grasps"]) == len(arrays["rehearsed"])
+    assert set(arrays["outcome"]) == {"slipped_in_lift"}
+    assert set(arrays["rehearsed"]) == {"held" if comes_to_an_end else ""}
+    for request, row in zip(rehearsals, arrays["grasps"], strict=True):
+        assert request.pose.position == pytest.approx(row[:3])
+        assert len(request.primitives) == len(arrays["superquadrics"])
+        assert request.mass is None, "what it weighs is not known yet"

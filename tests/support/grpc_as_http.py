@@ -26,6 +26,7 @@ _ENUMS = {
     "rule_set": pb.RuleSet,
     "input": pb.Input,
     "method": pb.Method,
+    "rehearsal": pb.Rehearsing,
 }
 _TYPES = {"float32": "<f4", "float64": "<f8", "uint16": "<u2"}
 
@@ -108,6 +109,8 @@ class GrpcAsHttp:
 ROW_LENGTHS = {"motion_object": 7, "motion_hand": 7, "motion_joints": 7}
 """Fields of ExecuteResponse that are rows of so many numbers."""
 ONLY_WHERE_ASKED_FOR = {
+    "sparge.v1.Grasp.rehearsed",
+    "sparge.v1.GraspAnswer.rehearsal",
     "sparge.v1.GraspAnswer.rejected",
     *(
         f"sparge.v1.ExecuteResponse.motion_{name}"
@@ -124,14 +127,15 @@ def plain(message: Any) -> Json:
         if each.full_name == "sparge.v1.GraspAnswer.points":
             continue
         value = getattr(message, each.name)
-        if each.full_name in ONLY_WHERE_ASKED_FOR and not value:
+        missing = not (message.HasField(each.name) if each.has_presence else value)
+        if each.full_name in ONLY_WHERE_ASKED_FOR and missing:
             continue
         if each.name in ROW_LENGTHS:
             fields[each.name] = np.reshape(value, (-1, ROW_LENGTHS[each.name])).tolist()
         elif each.is_repeated:
             entries = each.message_type and each.message_type.GetOptions().map_entry
             fields[each.name] = dict(value) if entries else [_plain(each, one) for one in value]
-        elif each.has_presence and not message.HasField(each.name):
+        elif each.has_presence and missing:
             fields[each.name] = None
         else:
             fields[each.name] = _plain(each, value)
@@ -163,8 +167,9 @@ def execute_request(fields: Json) -> pb.ExecuteRequest:
     asked.primitives.extend(pb.Superquadric(parameters=each) for each in given.pop("primitives"))
     if (plane := given.pop("plane", None)) is not None:
         asked.plane.MergeFrom(pb.SupportPlane(**{**plane, "normal": _vector(plane["normal"])}))
-    if "up" in given:
-        asked.up.MergeFrom(_vector(given.pop("up")))
+    for name in ("up", "heading"):
+        if name in given:
+            getattr(asked, name).MergeFrom(_vector(given.pop(name)))
     if "actor" in given:
         asked.actor = number(pb.Actor, given.pop("actor"))
     for name, value in given.items():

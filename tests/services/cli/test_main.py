@@ -52,6 +52,16 @@ def test_grasp_prints_the_answer_and_draws_it(environment: dict[str, str], tmp_p
     assert picture.read_bytes().startswith(b"\x89PNG")
 
 
+def test_grasp_says_what_came_of_a_rehearsal(environment: dict[str, str]) -> None:
+    done = sparge(
+        environment,
+        *("grasp", str(sample_path("saucepan")), "--task", "cooking", "--rehearsal", "always"),
+    )
+    assert done.returncode == 0, done.stderr
+    assert "rehearsed" in done.stdout
+    assert "rehearsal" in done.stdout.rsplit("Time", 1)[1]
+
+
 def test_grasp_as_json(environment: dict[str, str]) -> None:
     done = sparge(
         environment,

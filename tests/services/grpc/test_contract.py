@@ -6,7 +6,7 @@ from collections.abc import Iterator
 
 import pytest
 
-from tests.services.gateway import test_bad_input, test_grasp
+from tests.services.gateway import test_bad_input, test_grasp, test_rehearsal
 from tests.support.grpc_as_http import GrpcAsHttp
 from tests.support.grpc_calls import Through, grpc_server
 from tests.support.serving import Client
@@ -29,6 +29,10 @@ globals().update(
         if name.startswith("test_") and name not in NO_CALLS
     }
 )
+
+
+test_rehearsals_are_told = test_rehearsal.test_the_answer_says_what_came_of_the_best_grasps
+test_no_rehearsal_is_told = test_rehearsal.test_nothing_is_said_where_nothing_was_rehearsed
 
 
 @pytest.fixture(scope="module")

@@ -44,6 +44,7 @@ def test_every_parameter_arrives_as_it_was_set() -> None:
         explain=False,
         frame_id="map",
         rejected=7,
+        rehearsal=pb.REHEARSING_ALWAYS,
     )
     read = GraspParameters.model_validate(_typed(request.grasp_parameters(message)))
     assert read == GraspParameters(
@@ -61,6 +62,7 @@ def test_every_parameter_arrives_as_it_was_set() -> None:
         explain=False,
         frame_id="map",
         rejected=7,
+        rehearsal="always",
     )
     mine = {each.name for each, _ in message.ListFields()} | {"explain", "max_grasps"}
     assert mine == GraspParameters.model_fields.keys() - OF_HTTP
@@ -147,6 +149,7 @@ def test_an_execution_arrives_whole() -> None:
             "gripper": "robotiq_2f85",
             "actor": "hand",
             "strict": True,
+            "heading": [1, 0, -0.5],
             "seed": 3,
             "animate": True,
             "motion": True,
@@ -173,6 +176,7 @@ def test_an_execution_arrives_whole() -> None:
             "gripper": "robotiq_2f85",
             "actor": "hand",
             "strict": True,
+            "heading": [1, 0, -0.5],
             "seed": 3,
             "animate": True,
             "motion": True,
