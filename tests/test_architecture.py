@@ -24,7 +24,7 @@ SHARED_LAYERS = (  # lowest first; a module may import its own layer and those b
     {"superquadric"},
     {"child", "settings", "wire"},
     {"schemas"},
-    {"grippers"},
+    {"grippers", "rehearsal"},
     {"service"},
     {"client"},
 )
