@@ -14,7 +14,8 @@ A trial's file holds what the grasp proposal is asked with, and what came of its
     moved (G,) bool           moved by a few millimetres and degrees from where the answer has it
     lifted, held (G,) bool    lifted off the table; kept when shaken and tilted, too
     outcome (G,) str          of POST /execute
-    rehearsed (G,) str        the same on the superquadrics; empty where it came to no end
+    rehearsed (G, 3) str      the same on what may be believed of it (`BELIEVED` of
+                              shared.schemas.execution); empty where it came to no end
     object_class () str, number () int, view () int, sigma_at_1m () float
     mass () float             kg
 """
@@ -34,7 +35,7 @@ from experiments.trials.candidates import Tried, spread
 from experiments.trials.scenes import Scene
 from shared.client import GraspResult, Sparge
 from shared.errors import DeadlineExceeded, InvalidInput, SpargeError
-from shared.rehearsal import rehearsal
+from shared.rehearsal import rehearsals
 from shared.schemas.execution import ExecuteRequest, ExecuteResponse
 from shared.schemas.primitive import superquadric_rows
 
@@ -100,7 +101,7 @@ def try_out(
         for index, row in zip(question, grasps, strict=True)
     ]
     rehearsed = [
-        _rehearsed(judge, _rehearsal(scene, row, asked[index][0], asked[index][1]))
+        [_rehearsed(judge, each) for each in _rehearsals(scene, row, *asked[index][:2])]
         for index, row in zip(question, grasps, strict=True)
     ]
     done = np.array([each is not None for each in happened], dtype=np.bool_)
@@ -138,10 +139,12 @@ def execution(scene: Scene, grasp: Array, gripper: str) -> ExecuteRequest:
     return free_hand(scene.shown, scene.vertices, scene.faces, grasp, gripper, scene.mass)
 
 
-def _rehearsal(scene: Scene, grasp: Array, result: GraspResult, gripper: str) -> ExecuteRequest:
-    """Return the request to try a grasp (9,) on what was recovered of the object."""
+def _rehearsals(
+    scene: Scene, grasp: Array, result: GraspResult, gripper: str
+) -> list[ExecuteRequest]:
+    """Return the requests to try a grasp (9,) on what was recovered of the object."""
     seen = result.answer.scene
-    return rehearsal(
+    return rehearsals(
         grasp,
         superquadric_rows(result.answer.primitives).tolist(),
         points=scene.shown.points[result.point_primitive >= 0],

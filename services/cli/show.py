@@ -77,6 +77,6 @@ def _grasps(answer: GraspAnswer) -> Table:
             " ".join(f"{value:+.3f}" for value in each.pose.quaternion),
             f"{1e3 * each.width:.0f}",
             f"{each.score:.2f}",
-            *([(each.rehearsed or "").replace("_", " ")] if rehearsed else ()),
+            *([", ".join(each.rehearsed).replace("_", " ")] if rehearsed else ()),
         )
     return table

@@ -16,6 +16,7 @@ from shared.schemas.gripper import ParallelGripper, SuctionGripper
 ARMED = "panda"
 """The gripper that comes with an arm here."""
 MAX_FACES = 100_000
+MAX_POINTS = 1_000_000
 SIZE_RANGE = (0.004, 1.5)
 """Metres: the largest extent that an object may have."""
 MILLIMETRES_FROM = 10.0
@@ -57,6 +58,15 @@ def check_request(request: ExecuteRequest, grippers: Mapping[str, AnyGripper]) -
         _check_mesh(request.vertices, request.faces)
     else:
         _check_primitives(request.primitives)
+    if request.points is not None:
+        _check_near("points", request.points)
+        if len(request.points) > MAX_POINTS:
+            raise PayloadTooLarge(
+                f"points has {len(request.points)} rows; allowed are {MAX_POINTS}",
+                field="points",
+                found=len(request.points),
+                allowed=MAX_POINTS,
+            )
     return gripper
 
 

@@ -11,6 +11,7 @@ from dataclasses import dataclass
 import numpy as np
 from numpy.typing import NDArray
 
+from services.execution.believed import completed
 from services.execution.convex import ConvexPart
 from services.execution.decomposition import parts_of_mesh, parts_of_primitives
 from services.execution.waypoints import LEFT
@@ -73,7 +74,7 @@ def scene_from_request(request: ExecuteRequest) -> Scene:
     if request.vertices is not None and request.faces is not None:
         parts = parts_of_mesh(request.vertices, request.faces)
     else:
-        parts = parts_of_primitives(request.primitives)
+        parts = _believed(request)
     frame_from_mesh = np.eye(4)
     if request.object_pose is not None:
         place = request.object_pose
@@ -95,6 +96,15 @@ def scene_from_request(request: ExecuteRequest) -> Scene:
         _side(request, world_from_frame),
         raised,
     )
+
+
+def _believed(request: ExecuteRequest) -> list[ConvexPart]:
+    """Return the parts of an object of which there are primitives, and maybe points."""
+    parts: list[ConvexPart] = []
+    if request.points is not None and request.believed != "primitives":
+        viewpoint = np.array(request.viewpoint)
+        parts = completed(request.points, request.primitives, viewpoint, request.believed)
+    return parts or parts_of_primitives(request.primitives)
 
 
 def _side(request: ExecuteRequest, world_from_frame: Array) -> Array:

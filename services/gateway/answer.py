@@ -107,7 +107,7 @@ def _grasps(
 
 def _grasp(
     row: NDArray[np.float64],
-    rehearsed: execution.Outcome | None,
+    rehearsed: tuple[execution.Outcome, ...],
     up: NDArray[np.float64],
     settings: GatewaySettings,
 ) -> Grasp:

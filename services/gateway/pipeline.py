@@ -22,7 +22,7 @@ from services.gateway.request import GraspRequest
 from services.gateway.settings import GatewaySettings
 from shared.deadline import remaining_s, within
 from shared.errors import SpargeError, UnknownGripper
-from shared.rehearsal import rehearsal
+from shared.rehearsal import rehearsals
 from shared.schemas.execution import EXECUTE, ExecuteResponse
 from shared.schemas.grasp import (
     FIND_REGION,
@@ -318,17 +318,18 @@ class Pipeline:
                 ),
             )
 
-        async def attempt(grasp: Array) -> ExecuteResponse:
+        async def attempt(grasp: Array) -> list[ExecuteResponse]:
+            asked = rehearsals(
+                grasp,
+                [each.parameters for each in recovered.primitives],
+                points=scene.object_points,
+                viewpoint=parameters.viewpoint,
+                plane=scene.plane,
+                up=scene.up,
+                gripper=parameters.gripper,
+            )
             with within(until - time.monotonic()):
-                request = rehearsal(
-                    grasp,
-                    [each.parameters for each in recovered.primitives],
-                    points=scene.object_points,
-                    viewpoint=parameters.viewpoint,
-                    plane=scene.plane,
-                    up=scene.up,
-                    gripper=parameters.gripper,
-                )
-                return await run.call(EXECUTE, request, REHEARSAL)
+                calls = (run.call(EXECUTE, each, REHEARSAL) for each in asked)
+                return await asyncio.gather(*calls)
 
         return await rehearse(proposed, select, attempt, parameters.rehearsal)

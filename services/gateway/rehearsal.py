@@ -6,7 +6,7 @@ of the shape that the answer believes in can tell (docs/decisions/0032-rehearsal
 
 from __future__ import annotations
 
-from collections.abc import Awaitable, Callable
+from collections.abc import Awaitable, Callable, Sequence
 from dataclasses import dataclass, field
 from types import MappingProxyType
 
@@ -19,16 +19,16 @@ from shared.schemas.grasp import ProposeResponse, SelectResponse
 from shared.schemas.rehearsal import Rehearsal, Rehearsing
 
 Select = Callable[[NDArray[np.float64]], Awaitable[SelectResponse]]
-Try = Callable[[NDArray[np.float64]], Awaitable[ExecuteResponse]]
+Try = Callable[[NDArray[np.float64]], Awaitable[Sequence[ExecuteResponse]]]
 
-AT_MOST = 10
+AT_MOST = 5
 """Grasps that are rehearsed for one answer."""
 _SCORE = 8
 _EVIDENCE: MappingProxyType[Outcome, float] = MappingProxyType(
-    {"held": 0.81, "slipped_in_shake": -0.18}
+    {"held": 1.0, "slipped_in_shake": -0.55}
 )
-_LOST = -1.05
-"""What outcomes, the last all others, add to the logit of lifting: as
+_LOST = -1.3
+"""What each outcome, the last all others, adds to the logit of lifting: as
 `python -m services.grasp_proposal.training.rehearsal` printed it."""
 
 
@@ -41,19 +41,19 @@ class Rehearsed:
     selected : SelectResponse
         The grasps that hold the region, best first by what is known now.
     outcomes : dict
-        By row of the proposal.
+        On each shape, by row of the proposal.
     stopped : str or None
         Code of the error that ended it too early.
     """
 
     selected: SelectResponse
-    outcomes: dict[int, Outcome] = field(default_factory=dict)
+    outcomes: dict[int, tuple[Outcome, ...]] = field(default_factory=dict)
     stopped: str | None = None
 
     @property
-    def of_answered(self) -> tuple[Outcome | None, ...]:
-        """What came of each grasp of the answer; None where it was not rehearsed."""
-        return tuple(self.outcomes.get(int(row)) for row in self.selected.indices)
+    def of_answered(self) -> tuple[tuple[Outcome, ...], ...]:
+        """What came of each grasp of the answer; empty where it was not rehearsed."""
+        return tuple(self.outcomes.get(int(row), ()) for row in self.selected.indices)
 
     @property
     def report(self) -> Rehearsal | None:
@@ -66,10 +66,10 @@ class Rehearsed:
 async def rehearse(
     proposed: ProposeResponse, select: Select, attempt: Try, rehearsing: Rehearsing
 ) -> Rehearsed:
-    """Try the best grasp while it is in doubt; what comes of it is evidence, and others follow.
+    """Where the best grasp is in doubt, try it and the next that are; answer the best by then.
 
-    Best-first: each outcome raises or lowers a grasp's score, and the search ends when the best
-    one is known, or is in no doubt.
+    What comes of a grasp is evidence that raises or lowers its score. One that is held on every
+    shape ends the search: there is hardly a better one.
 
     Parameters
     ----------
@@ -77,7 +77,7 @@ async def rehearse(
     select : callable
         Orders grasp rows (G, 9) and keeps those that hold the region.
     attempt : callable
-        Simulates one.
+        Simulates one on every shape that the object may have.
     rehearsing : str
 
     Raises
@@ -85,28 +85,34 @@ async def rehearse(
     SpargeError
         From `select`; from `attempt` only where rehearsing is `always`.
     """
+    known = Rehearsed(await select(proposed.grasps))
+    rows = known.selected.indices.tolist()
+    if rehearsing == "auto":
+        rows = [row for row in rows if proposed.doubtful[row]] if _in_doubt(proposed, rows) else []
     grasps = proposed.grasps.copy()
-    known = Rehearsed(await select(grasps))
-    while rehearsing != "never" and len(known.selected.indices) and len(known.outcomes) < AT_MOST:
-        best = int(known.selected.indices[0])
-        if best in known.outcomes:
-            break
-        if rehearsing == "auto" and not proposed.doubtful[best]:
-            break
+    for row in rows[: 0 if rehearsing == "never" else AT_MOST]:
         try:
-            outcome = (await attempt(grasps[best])).outcome
+            came = tuple(each.outcome for each in await attempt(grasps[row]))
         except SpargeError as error:
             if rehearsing == "always":
                 raise
             known.stopped = error.code
             break
-        known.outcomes[best] = outcome
-        grasps[best, _SCORE] = after(grasps[best, _SCORE], outcome)
+        known.outcomes[row] = came
+        grasps[row, _SCORE] = after(grasps[row, _SCORE], came)
+        if set(came) == {"held"}:
+            break
+    if known.outcomes:
         known.selected = await select(grasps)
     return known
 
 
-def after(score: float, outcome: Outcome) -> float:
-    """Return the score of a grasp, 0 to 1, of which is known what came of its rehearsal."""
-    odds = np.exp(_EVIDENCE.get(outcome, _LOST))
+def _in_doubt(proposed: ProposeResponse, rows: Sequence[int]) -> bool:
+    """Whether the best grasp is."""
+    return bool(rows) and bool(proposed.doubtful[rows[0]])
+
+
+def after(score: float, outcomes: Sequence[Outcome]) -> float:
+    """Return the score of a grasp, 0 to 1, of which is known what came of its rehearsals."""
+    odds = np.exp(sum(_EVIDENCE.get(outcome, _LOST) for outcome in outcomes))
     return float(odds * score / (odds * score + (1 - score)))

@@ -94,7 +94,7 @@ def _grasp(of: Grasp) -> pb.Grasp:
         retreat=pose(of.retreat),
         width=of.width,
         score=of.score,
-        rehearsed=None if of.rehearsed is None else number(pb.Outcome, of.rehearsed),
+        rehearsed=[number(pb.Outcome, each) for each in of.rehearsed],
     )
 
 

@@ -122,11 +122,13 @@ def execute(asked: pb.ExecuteRequest) -> HttpRequest:
         fields["plane"] = geometry.plane_fields(asked.plane)
     fields |= {
         name: geometry.vector_fields(getattr(asked, name))
-        for name in ("up", "heading")
+        for name in ("up", "heading", "viewpoint")
         if asked.HasField(name)
     }
     if (actor := text(pb.Actor, asked.actor, "actor")) is not None:
         fields["actor"] = actor
+    if (believed := text(pb.Believed, asked.believed, "believed")) is not None:
+        fields["believed"] = believed
     message = np.frombuffer(_json(fields).encode(), dtype=np.uint8)
     content = write_npz({**_mesh(asked), ENVELOPE: message})
     return HttpRequest("POST", "/execute", content_type=NPZ, accept=NPZ, content=content)
@@ -134,8 +136,9 @@ def execute(asked: pb.ExecuteRequest) -> HttpRequest:
 
 def _mesh(asked: pb.ExecuteRequest) -> dict[str, Any]:
     arrays: dict[str, Any] = {}
-    if asked.HasField("vertices"):
-        arrays["vertices"] = geometry.points(asked.vertices, "vertices")
+    for name in ("vertices", "points"):
+        if asked.HasField(name):
+            arrays[name] = geometry.points(getattr(asked, name), name)
     if asked.HasField("faces"):
         corners = np.array(asked.faces.indices, dtype=np.int32)
         if corners.size % 3:

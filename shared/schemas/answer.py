@@ -36,8 +36,9 @@ class Grasp(Message):
     width: float
     """Opening in metres that the grasp needs."""
     score: Annotated[float, Field(ge=0, le=1)]
-    rehearsed: Annotated[Outcome | None, Field(exclude_if=lambda outcome: outcome is None)] = None
-    """What came of it in simulation, on the recovered primitives, where it was tried."""
+    rehearsed: Annotated[tuple[Outcome, ...], Field(exclude_if=operator.not_)] = ()
+    """What came of it in simulation, where it was tried: on the primitives, and on the seen
+    points completed in two ways."""
 
 
 class Rejection(Message):

@@ -3,13 +3,13 @@
 from __future__ import annotations
 
 import operator
-from typing import Annotated, Any, Literal, Self
+from typing import Annotated, Any, Literal, Self, get_args
 
 import numpy as np
 from numpy.typing import NDArray
 from pydantic import Field, FiniteFloat, model_validator
 
-from shared.schemas.fields import Direction, Mask, Points, SuperquadricVector
+from shared.schemas.fields import Direction, Mask, Points, SuperquadricVector, Vector3
 from shared.schemas.grasp import Pose
 from shared.schemas.route import Route
 from shared.schemas.scene import SupportPlane
@@ -26,6 +26,10 @@ Outcome = Literal[
     "slipped_in_shake",
 ]
 
+
+Believed = Literal["primitives", "turned", "reflected"]
+"""What the other side of an object, which nobody has seen, is taken for."""
+BELIEVED: tuple[Believed, ...] = get_args(Believed)
 
 Series = Annotated[NDArray[np.float64], ArrayField("float64", ("F",))]
 PoseRows = Annotated[NDArray[np.float64], ArrayField("float64", ("F", 7))]
@@ -51,6 +55,14 @@ class ExecuteRequest(Message):
     object_pose: Pose | None = None
     """Where the mesh's own frame is in the frame of the grasp. Many requests about one mesh
     are answered sooner with it: a mesh is prepared once, as long as its arrays stay the same."""
+    points: Points | None = None
+    """Seen of the object, in the frame of the grasp: with them, `believed` may complete it."""
+    viewpoint: Vector3 = (0.0, 0.0, 0.0)
+    """Of the sensor that saw them."""
+    believed: Believed = "primitives"
+    """What the object looks like where no mesh is given: as the primitives do, or as the points do
+    and, on the other side of each primitive, the same points, turned by half about its axis or
+    reflected away from the sensor."""
     mass: Annotated[FiniteFloat, Field(gt=0, le=100)] | None = None
     """Of the object, kg; None: a guess by its volume, 400 kg/m3 and between 0.05 and 0.6 kg."""
     plane: SupportPlane | None = None
@@ -87,6 +99,10 @@ class ExecuteRequest(Message):
             raise ValueError("highlight needs one entry for every face of the mesh")
         if self.plane is None and self.up is None:
             raise ValueError("give plane or up, so that gravity has a direction")
+        if self.believed != "primitives" and (self.points is None or not self.primitives):
+            raise ValueError(f"{self.believed} completes primitives by points: give both")
+        if self.points is not None and not (len(self.points) and np.isfinite(self.points).all()):
+            raise ValueError("points must be some, and finite")
         if self.object_pose is not None and self.vertices is None:
             raise ValueError("object_pose places a mesh; primitives are given where they are")
         return self

@@ -5,7 +5,8 @@ from __future__ import annotations
 import numpy as np
 import pytest
 
-from shared.rehearsal import rehearsal
+from shared.rehearsal import rehearsals
+from shared.schemas.execution import BELIEVED
 
 GRASP = np.array([0.1, 0.2, 0.8, 0.0, 1.0, 0.0, 0.0, 0.03, 0.7])
 BODY = (0.1, 1.0, 0.03, 0.03, 0.05, 0.1, 0.2, 0.8, 0.0, 0.0, 0.0, 1.0)
@@ -16,10 +17,10 @@ POINTS = np.array([[0.1, 0.2, 0.8], [0.1, 0.2, 0.9]])
     ("viewpoint", "heading"),
     [((0.0, 0.0, 0.0), (0.1, 0.2, 0.85)), ((0.1, 0.2, 0.85), None)],
 )
-def test_a_hand_alone_tries_it_strictly_on_the_superquadrics(
-    viewpoint: tuple[float, ...], heading: tuple[float, ...] | None
+def test_a_hand_alone_tries_it_strictly_on_whatever_is_believed(
+    viewpoint: tuple[float, float, float], heading: tuple[float, ...] | None
 ) -> None:
-    asked = rehearsal(
+    asked = rehearsals(
         GRASP,
         [BODY],
         points=POINTS,
@@ -28,9 +29,13 @@ def test_a_hand_alone_tries_it_strictly_on_the_superquadrics(
         up=(0.0, 0.0, 1.0),
         gripper="tiago",
     )
-    assert asked.pose.position == (0.1, 0.2, 0.8)
-    assert asked.pose.quaternion == (0.0, 1.0, 0.0, 0.0)
-    assert (asked.width, asked.gripper, asked.actor) == (0.03, "tiago", "hand")
-    assert asked.strict
-    assert asked.primitives == (BODY,)
-    assert asked.heading == (None if heading is None else pytest.approx(heading))
+    assert tuple(each.believed for each in asked) == BELIEVED
+    for each in asked:
+        assert each.pose.position == (0.1, 0.2, 0.8)
+        assert each.pose.quaternion == (0.0, 1.0, 0.0, 0.0)
+        assert (each.width, each.gripper, each.actor) == (0.03, "tiago", "hand")
+        assert each.strict
+        assert each.primitives == (BODY,)
+        assert each.viewpoint == viewpoint
+        assert (each.points is None) == (each.believed == "primitives")
+        assert each.heading == (None if heading is None else pytest.approx(heading))

@@ -167,11 +167,13 @@ def execute_request(fields: Json) -> pb.ExecuteRequest:
     asked.primitives.extend(pb.Superquadric(parameters=each) for each in given.pop("primitives"))
     if (plane := given.pop("plane", None)) is not None:
         asked.plane.MergeFrom(pb.SupportPlane(**{**plane, "normal": _vector(plane["normal"])}))
-    for name in ("up", "heading"):
+    for name in ("up", "heading", "viewpoint"):
         if name in given:
             getattr(asked, name).MergeFrom(_vector(given.pop(name)))
     if "actor" in given:
         asked.actor = number(pb.Actor, given.pop("actor"))
+    if "believed" in given:
+        asked.believed = number(pb.Believed, given.pop("believed"))
     for name, value in given.items():
         setattr(asked, name, value)
     return asked

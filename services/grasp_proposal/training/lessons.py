@@ -50,8 +50,9 @@ class Lessons:
         They are not where they were proposed.
     score : (G,) array
         Of the answer, of where they were proposed.
-    rehearsed : (G,) str array
-        What came of them on the superquadrics; empty where that is not known or tells nothing.
+    rehearsed : (G, 3) str array
+        What came of them on what the object may look like; empty where that is not known or
+        tells nothing.
     geometric : (G,) array
         The score of the named factors.
     view, number : (G,) int arrays
@@ -146,7 +147,7 @@ def _lessons(arrays: Arrays, question: int, mine: Mask, hand: Hand) -> Lessons:
     rows = int(some.sum())
     scores = arrays["grasps"][mine][some][:, -1]
     told = doubtful(workspace, hand, contacts, scores, sight)
-    rehearsed = arrays.get("rehearsed", np.full(len(mine), ""))
+    rehearsed = arrays.get("rehearsed", np.full((len(mine), 3), ""))
     return Lessons(
         images=images,
         numbers=numbers,
@@ -154,7 +155,7 @@ def _lessons(arrays: Arrays, question: int, mine: Mask, hand: Hand) -> Lessons:
         held=arrays["held"][mine][some],
         moved=arrays["moved"][mine][some],
         score=scores,
-        rehearsed=np.where(told, rehearsed[mine][some], ""),
+        rehearsed=np.where(told[:, None], rehearsed[mine][some], ""),
         geometric=score(workspace, hand, contacts, palm, sight),
         view=np.zeros(rows, dtype=np.intp),
         number=np.full(rows, int(arrays["number"])),

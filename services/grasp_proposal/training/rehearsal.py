@@ -28,8 +28,8 @@ OUTCOMES = ("held", "slipped_in_shake", "lost")
 _TINY = 1e-9
 
 
-def fit_evidence(logits: Array, came: NDArray[np.intp], lessons: Lessons) -> Array:
-    """Return what a rehearsal's outcome adds to the logit of lifting (3,), by `OUTCOMES`.
+def fit_evidence(logits: Array, counts: Array, lessons: Lessons) -> Array:
+    """Return what each outcome adds to the logit of lifting (3,), by `OUTCOMES`.
 
     How far the outcomes are apart is what best orders the grasps of one question, for lifting
     and for keeping, whose mean it is (`fit_pairs`); where they lie makes the probabilities of
@@ -38,13 +38,13 @@ def fit_evidence(logits: Array, came: NDArray[np.intp], lessons: Lessons) -> Arr
     Parameters
     ----------
     logits : (G,) array
-        Of lifting, before the rehearsal.
-    came : (G,) int array
-        Index of the outcome.
+        Of lifting, before the rehearsals.
+    counts : (G, 3) array
+        How often each outcome came.
     lessons : Lessons
         What really came of the G grasps.
     """
-    known = np.column_stack([logits, came == 0, came == 1]).astype(np.float64)
+    known = np.column_stack([logits, counts[:, :2]])
     bounds = Bounds([_TINY, -np.inf, -np.inf], [np.inf, np.inf, np.inf])
     steps = []
     for truth in (lessons.lifted, lessons.held):
@@ -52,7 +52,8 @@ def fit_evidence(logits: Array, came: NDArray[np.intp], lessons: Lessons) -> Arr
         steps.append(weights[1:] / weights[0])
     step = np.append(np.mean(steps, axis=0), 0.0)
     often = float(lessons.lifted.mean())
-    centre = brentq(lambda at: sigmoid(logits + step[came] + at).mean() - often, -10, 10)
+    times = counts.sum(axis=1)
+    centre = brentq(lambda at: sigmoid(logits + counts @ step + times * at).mean() - often, -10, 10)
     return np.asarray(step + centre)
 
 
@@ -65,33 +66,40 @@ def right_order(order: Array, truth: NDArray[np.bool_], view: NDArray[np.intp]) 
 
 def report(lessons: Lessons) -> str:
     """Return, as Markdown, what rehearsals tell, and how well with what share of pairs."""
-    mine = lessons.take(lessons.rehearsed != "")
+    mine = lessons.take((lessons.rehearsed != "").all(axis=1))
     scores = np.clip(mine.score, _TINY, 1 - _TINY)
     logits = np.log(scores / (1 - scores))
-    came = np.array([OUTCOMES.index(each) if each in OUTCOMES else 2 for each in mine.rehearsed])
-    evidence = fit_evidence(logits, came, mine)
+    counts = counted(mine.rehearsed)
+    evidence = fit_evidence(logits, counts, mine)
     lines = [
         f"{len(mine)} of {len(lessons)} grasps are in doubt and can be rehearsed.",
         "",
-        "| rehearsed | grasps | lifted | kept | adds to the logit |",
-        "| --- | --- | --- | --- | --- |",
+        "| held on so many shapes | grasps | lifted | kept |",
+        "| --- | --- | --- | --- |",
     ]
-    for index, name in enumerate(OUTCOMES):
-        some = mine.take(came == index)
-        lines.append(
-            f"| {name} | {len(some)} | {some.lifted.mean():.2f} | {some.held.mean():.2f} "
-            f"| {evidence[index]:+.2f} |"
-        )
+    for times in range(mine.rehearsed.shape[1] + 1):
+        some = mine.take(counts[:, 0] == times)
+        share = [f"{truth.mean():.2f}" if len(some) else "-" for truth in (some.lifted, some.held)]
+        lines.append(f"| {times} | {len(some)} | {share[0]} | {share[1]} |")
+    told = zip(OUTCOMES, evidence, strict=True)
+    lines += ["", "Each adds to the logit: " + ", ".join(f"{n} {at:+.2f}" for n, at in told) + "."]
+    first = counted(mine.rehearsed[:, :1])
     orders: Mapping[str, Array] = {
         "score": logits,
-        "rehearsal": -came.astype(np.float64),
-        "both": logits + evidence[came],
+        "score and superquadrics": logits + first @ fit_evidence(logits, first, mine),
+        "score and all shapes": logits + counts @ evidence,
     }
     lines += ["", "| ordered by | lifting | keeping |", "| --- | --- | --- |"]
     for name, order in orders.items():
         shares = [right_order(order, truth, mine.view) for truth in (mine.lifted, mine.held)]
         lines.append(f"| {name} | {shares[0]:.3f} | {shares[1]:.3f} |")
     return "\n".join(lines)
+
+
+def counted(rehearsed: NDArray[np.str_]) -> Array:
+    """Return how often (G, 3) each of `OUTCOMES` came of rehearsals (G, S)."""
+    named = [(rehearsed == name).sum(axis=1) for name in OUTCOMES[:-1]]
+    return np.column_stack([*named, rehearsed.shape[1] - sum(named)]).astype(np.float64)
 
 
 def main(arguments: list[str] | None = None) -> None:

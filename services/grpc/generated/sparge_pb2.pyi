@@ -32,6 +32,13 @@ class Method(int, metaclass=_enum_type_wrapper.EnumTypeWrapper):
     METHOD_PARTS: _ClassVar[Method]
     METHOD_EMS: _ClassVar[Method]
 
+class Believed(int, metaclass=_enum_type_wrapper.EnumTypeWrapper):
+    __slots__ = ()
+    BELIEVED_UNSPECIFIED: _ClassVar[Believed]
+    BELIEVED_PRIMITIVES: _ClassVar[Believed]
+    BELIEVED_TURNED: _ClassVar[Believed]
+    BELIEVED_REFLECTED: _ClassVar[Believed]
+
 class Rehearsing(int, metaclass=_enum_type_wrapper.EnumTypeWrapper):
     __slots__ = ()
     REHEARSING_UNSPECIFIED: _ClassVar[Rehearsing]
@@ -75,6 +82,10 @@ INPUT_OBJECT: Input
 METHOD_UNSPECIFIED: Method
 METHOD_PARTS: Method
 METHOD_EMS: Method
+BELIEVED_UNSPECIFIED: Believed
+BELIEVED_PRIMITIVES: Believed
+BELIEVED_TURNED: Believed
+BELIEVED_REFLECTED: Believed
 REHEARSING_UNSPECIFIED: Rehearsing
 REHEARSING_AUTO: Rehearsing
 REHEARSING_NEVER: Rehearsing
@@ -305,8 +316,8 @@ class Grasp(_message.Message):
     retreat: Pose
     width: float
     score: float
-    rehearsed: Outcome
-    def __init__(self, pose: _Optional[_Union[Pose, _Mapping]] = ..., pregrasp: _Optional[_Union[Pose, _Mapping]] = ..., retreat: _Optional[_Union[Pose, _Mapping]] = ..., width: _Optional[float] = ..., score: _Optional[float] = ..., rehearsed: _Optional[_Union[Outcome, str]] = ...) -> None: ...
+    rehearsed: _containers.RepeatedScalarFieldContainer[Outcome]
+    def __init__(self, pose: _Optional[_Union[Pose, _Mapping]] = ..., pregrasp: _Optional[_Union[Pose, _Mapping]] = ..., retreat: _Optional[_Union[Pose, _Mapping]] = ..., width: _Optional[float] = ..., score: _Optional[float] = ..., rehearsed: _Optional[_Iterable[_Union[Outcome, str]]] = ...) -> None: ...
 
 class Rehearsal(_message.Message):
     __slots__ = ("tried", "stopped")
@@ -663,7 +674,7 @@ class Faces(_message.Message):
     def __init__(self, indices: _Optional[_Iterable[int]] = ...) -> None: ...
 
 class ExecuteRequest(_message.Message):
-    __slots__ = ("pose", "width", "primitives", "vertices", "faces", "object_pose", "mass", "plane", "up", "gripper", "actor", "strict", "seed", "animate", "motion", "highlight", "heading")
+    __slots__ = ("pose", "width", "primitives", "vertices", "faces", "object_pose", "mass", "plane", "up", "gripper", "actor", "strict", "seed", "animate", "motion", "highlight", "heading", "points", "viewpoint", "believed")
     POSE_FIELD_NUMBER: _ClassVar[int]
     WIDTH_FIELD_NUMBER: _ClassVar[int]
     PRIMITIVES_FIELD_NUMBER: _ClassVar[int]
@@ -681,6 +692,9 @@ class ExecuteRequest(_message.Message):
     MOTION_FIELD_NUMBER: _ClassVar[int]
     HIGHLIGHT_FIELD_NUMBER: _ClassVar[int]
     HEADING_FIELD_NUMBER: _ClassVar[int]
+    POINTS_FIELD_NUMBER: _ClassVar[int]
+    VIEWPOINT_FIELD_NUMBER: _ClassVar[int]
+    BELIEVED_FIELD_NUMBER: _ClassVar[int]
     pose: Pose
     width: float
     primitives: _containers.RepeatedCompositeFieldContainer[Superquadric]
@@ -698,7 +712,10 @@ class ExecuteRequest(_message.Message):
     motion: bool
     highlight: _containers.RepeatedScalarFieldContainer[bool]
     heading: Vector3
-    def __init__(self, pose: _Optional[_Union[Pose, _Mapping]] = ..., width: _Optional[float] = ..., primitives: _Optional[_Iterable[_Union[Superquadric, _Mapping]]] = ..., vertices: _Optional[_Union[PointCloud, _Mapping]] = ..., faces: _Optional[_Union[Faces, _Mapping]] = ..., object_pose: _Optional[_Union[Pose, _Mapping]] = ..., mass: _Optional[float] = ..., plane: _Optional[_Union[SupportPlane, _Mapping]] = ..., up: _Optional[_Union[Vector3, _Mapping]] = ..., gripper: _Optional[str] = ..., actor: _Optional[_Union[Actor, str]] = ..., strict: _Optional[bool] = ..., seed: _Optional[int] = ..., animate: _Optional[bool] = ..., motion: _Optional[bool] = ..., highlight: _Optional[_Iterable[bool]] = ..., heading: _Optional[_Union[Vector3, _Mapping]] = ...) -> None: ...
+    points: PointCloud
+    viewpoint: Vector3
+    believed: Believed
+    def __init__(self, pose: _Optional[_Union[Pose, _Mapping]] = ..., width: _Optional[float] = ..., primitives: _Optional[_Iterable[_Union[Superquadric, _Mapping]]] = ..., vertices: _Optional[_Union[PointCloud, _Mapping]] = ..., faces: _Optional[_Union[Faces, _Mapping]] = ..., object_pose: _Optional[_Union[Pose, _Mapping]] = ..., mass: _Optional[float] = ..., plane: _Optional[_Union[SupportPlane, _Mapping]] = ..., up: _Optional[_Union[Vector3, _Mapping]] = ..., gripper: _Optional[str] = ..., actor: _Optional[_Union[Actor, str]] = ..., strict: _Optional[bool] = ..., seed: _Optional[int] = ..., animate: _Optional[bool] = ..., motion: _Optional[bool] = ..., highlight: _Optional[_Iterable[bool]] = ..., heading: _Optional[_Union[Vector3, _Mapping]] = ..., points: _Optional[_Union[PointCloud, _Mapping]] = ..., viewpoint: _Optional[_Union[Vector3, _Mapping]] = ..., believed: _Optional[_Union[Believed, str]] = ...) -> None: ...
 
 class Phase(_message.Message):
     __slots__ = ("name", "simulated_s")

@@ -124,7 +124,7 @@ def test_torque_counts_beyond_what_is_usual_for_an_object() -> None:
         held=happened,
         moved=np.zeros(len(view), dtype=bool),
         score=np.full(len(view), 0.5),
-        rehearsed=np.full(len(view), ""),
+        rehearsed=np.full((len(view), 3), ""),
         geometric=np.zeros(len(view)),
         view=view,
         number=view,

@@ -8,21 +8,28 @@ from numpy.typing import NDArray
 
 from services.grasp_proposal.measures import NAMES
 from services.grasp_proposal.training.lessons import Lessons
-from services.grasp_proposal.training.rehearsal import OUTCOMES, fit_evidence, report, right_order
+from services.grasp_proposal.training.rehearsal import (
+    OUTCOMES,
+    counted,
+    fit_evidence,
+    report,
+    right_order,
+)
 
 Array = NDArray[np.float64]
 
-TRUTH = np.array([1.2, 0.1, -1.5])
+TRUTH = np.array([0.8, 0.0, -0.9])
 GRASPS = 24_000
 
 
-def drawn(evidence: Array) -> tuple[Lessons, Array, NDArray[np.intp]]:
-    """Return trials in which outcomes are worth `evidence`, their logits, and the outcomes."""
+def drawn(evidence: Array) -> tuple[Lessons, Array, Array]:
+    """Return trials in which outcomes are worth `evidence`, their logits, counts of outcomes."""
     rng = np.random.default_rng(4)
     view = np.repeat(np.arange(GRASPS // 4), 4)
     logits = rng.normal(0.5, 1.0, GRASPS)
-    came = rng.integers(0, 3, GRASPS)
-    happened = rng.random(GRASPS) < 1 / (1 + np.exp(-(logits + evidence[came])))
+    came = rng.integers(0, 3, (GRASPS, 3))
+    shift = evidence[came].sum(axis=1)
+    happened = rng.random(GRASPS) < 1 / (1 + np.exp(-(logits + shift)))
     lessons = Lessons(
         images=np.zeros((GRASPS, 1), dtype=np.float32),
         numbers=np.zeros((GRASPS, len(NAMES)), dtype=np.float32),
@@ -36,17 +43,17 @@ def drawn(evidence: Array) -> tuple[Lessons, Array, NDArray[np.intp]]:
         number=view,
         object_class=np.full(GRASPS, "post"),
     )
-    return lessons, logits, came
+    return lessons, logits, counted(lessons.rehearsed)
 
 
 def test_the_evidence_is_found_again() -> None:
-    lessons, logits, came = drawn(TRUTH)
-    assert fit_evidence(logits, came, lessons) == pytest.approx(TRUTH, abs=0.12)
+    lessons, logits, counts = drawn(TRUTH)
+    assert fit_evidence(logits, counts, lessons) == pytest.approx(TRUTH, abs=0.12)
 
 
 def test_the_evidence_makes_the_probabilities_true_on_the_whole() -> None:
-    lessons, logits, came = drawn(TRUTH)
-    added = logits + fit_evidence(logits, came, lessons)[came]
+    lessons, logits, counts = drawn(TRUTH)
+    added = logits + counts @ fit_evidence(logits, counts, lessons)
     assert (1 / (1 + np.exp(-added))).mean() == pytest.approx(lessons.lifted.mean(), abs=1e-6)
 
 
@@ -64,7 +71,14 @@ def test_the_report_leaves_out_what_was_not_rehearsed() -> None:
     told = report(Lessons(**{**vars(lessons), "rehearsed": rehearsed}))
     assert f"{GRASPS // 2} of {GRASPS} grasps" in told
     rows = {line.split(" | ")[0].strip("| "): line.split(" | ") for line in told.splitlines()}
-    assert sum(int(rows[name][1]) for name in OUTCOMES) == GRASPS // 2
-    shares = {name: float(rows[name][1]) for name in ("score", "rehearsal", "both")}
-    assert 0.5 < shares["rehearsal"] < shares["both"]
-    assert shares["score"] < shares["both"]
+    assert sum(int(rows[str(times)][1]) for times in range(4)) == GRASPS // 2
+    lifted = [float(rows[str(times)][2]) for times in range(4)]
+    assert lifted == sorted(lifted)
+    names = ("score", "score and superquadrics", "score and all shapes")
+    shares = [float(rows[name][1]) for name in names]
+    assert 0.5 < shares[0] < shares[1] < shares[2]
+
+
+def test_outcomes_are_counted() -> None:
+    came = np.array([["held", "held", "missed"], ["slipped_in_shake", "pushed_away", "held"]])
+    assert counted(came).tolist() == [[2, 0, 1], [1, 1, 1]]

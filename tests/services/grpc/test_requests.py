@@ -19,6 +19,7 @@ from shared.wire.npz import read_npz
 from tests.services.grpc.test_messages import OF_HTTP
 from tests.support.grpc_as_http import execute_request
 
+BODY = [1, 1, 0.03, 0.03, 0.05, 0, 0, 0.6, 0, 0, 0, 1]
 ROWS = np.arange(12.0).reshape(4, 3)
 
 
@@ -143,31 +144,34 @@ def test_an_execution_arrives_whole() -> None:
             "pose": {"position": [0, 0, 0.6], "quaternion": [0, 0, 0, 1]},
             "width": 0.05,
             "mass": 0.3,
-            "primitives": [],
+            "primitives": [BODY],
             "plane": {"normal": [0, 0, 1], "offset": 0.5, "inliers": 7, "residual_mm": 0.5},
             "up": [0, 0, 1],
             "gripper": "robotiq_2f85",
             "actor": "hand",
             "strict": True,
             "heading": [1, 0, -0.5],
+            "viewpoint": [0, 0.1, 2],
+            "believed": "turned",
             "seed": 3,
             "animate": True,
             "motion": True,
         }
     )
     asked.vertices.float64 = corners.tobytes()
+    asked.points.float64 = corners[:5].tobytes()
     asked.faces.indices.extend(faces.ravel())
     asked.object_pose.CopyFrom(asked.pose)
     asked.highlight.extend([True, False])
-    assert {each.name for each, _ in asked.ListFields()} == set(ExecuteRequest.model_fields) - {
-        "primitives"
-    }
+    assert {each.name for each, _ in asked.ListFields()} == set(ExecuteRequest.model_fields)
     read = decode(ExecuteRequest, request.execute(asked).content or b"", NPZ, 10**6)
     assert read == ExecuteRequest.model_validate(
         {
             "pose": {"position": [0, 0, 0.6], "quaternion": [0, 0, 0, 1]},
             "width": 0.05,
             "mass": 0.3,
+            "primitives": [BODY],
+            "points": corners[:5],
             "vertices": corners,
             "faces": faces,
             "object_pose": {"position": [0, 0, 0.6], "quaternion": [0, 0, 0, 1]},
@@ -177,6 +181,8 @@ def test_an_execution_arrives_whole() -> None:
             "actor": "hand",
             "strict": True,
             "heading": [1, 0, -0.5],
+            "viewpoint": [0, 0.1, 2],
+            "believed": "turned",
             "seed": 3,
             "animate": True,
             "motion": True,
