@@ -45,7 +45,8 @@ InputOption = Annotated[Input, typer.Option("--input", help="scene: find the obj
 GripperOption = Annotated[str, typer.Option(help="A name from GET /grippers")]
 MaxGraspsOption = Annotated[int, typer.Option(min=0, max=100)]
 RehearsalOption = Annotated[
-    Rehearsal, typer.Option(help="Try grasps in simulation first; auto: those in doubt")
+    Rehearsal | None,
+    typer.Option(help="Try grasps in simulation first; auto: where the best is in doubt"),
 ]
 SeedOption = Annotated[int, typer.Option(min=0)]
 _VIEWPOINT = typer.Option(help="Sensor position, as [x, y, z]")

@@ -329,7 +329,7 @@ class Pipeline:
                 gripper=parameters.gripper,
             )
             with within(until - time.monotonic()):
-                calls = (run.call(EXECUTE, each, REHEARSAL) for each in asked)
-                return await asyncio.gather(*calls)
+                return [await run.call(EXECUTE, each, REHEARSAL) for each in asked]
 
-        return await rehearse(proposed, select, attempt, parameters.rehearsal)
+        rehearsing = parameters.rehearsal or self._settings.rehearsal
+        return await rehearse(proposed, select, attempt, rehearsing)

@@ -25,9 +25,9 @@ AT_MOST = 5
 """Grasps that are rehearsed for one answer."""
 _SCORE = 8
 _EVIDENCE: MappingProxyType[Outcome, float] = MappingProxyType(
-    {"held": 1.0, "slipped_in_shake": -0.55}
+    {"held": 0.70, "slipped_in_shake": 0.0}
 )
-_LOST = -1.3
+_LOST = -0.57
 """What each outcome, the last all others, adds to the logit of lifting: as
 `python -m services.grasp_proposal.training.rehearsal` printed it."""
 

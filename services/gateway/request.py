@@ -47,8 +47,9 @@ class GraspParameters(Message):
     recovery: EmsParameters | None = None
     """Parameters of the method `ems`, instead of the backend's own."""
     explain: bool = True
-    rehearsal: Rehearsing = "never"
-    """Whether grasps are tried in simulation before they are answered."""
+    rehearsal: Rehearsing | None = None
+    """Whether grasps are tried in simulation before they are answered; without it, the backend's
+    own way."""
     rejected: Examples = 0
     """So many hand poses that were considered and left out are in the answer, with the reason."""
     frame_id: Annotated[str, Field(min_length=1, max_length=128)] = "camera"

@@ -7,6 +7,7 @@ from pathlib import Path
 from pydantic import Field
 
 from shared.schemas.primitive import Preset
+from shared.schemas.rehearsal import Rehearsing
 from shared.schemas.task import RuleSet
 from shared.settings import ServiceSettings, environment, processors
 
@@ -36,6 +37,9 @@ class GatewaySettings(ServiceSettings):
         Bound on the time to answer POST /grasp; a request's `X-Request-Timeout` may be less.
     execution_deadline_s : float
         The same for POST /execute.
+    rehearsal : str
+        Whether grasps are tried in simulation before they are answered, where a request does not
+        say: `auto`, those in doubt; `never`; `always`.
     rehearsal_time_s : float
         How long grasps may be rehearsed for one answer; those in doubt after that are not.
     samples : int
@@ -84,6 +88,7 @@ class GatewaySettings(ServiceSettings):
     queue_wait_s: float = Field(default=1.0, ge=0)
     deadline_s: float = Field(default=30.0, gt=0)
     execution_deadline_s: float = Field(default=60.0, gt=0)
+    rehearsal: Rehearsing = "never"
     rehearsal_time_s: float = Field(default=5.0, gt=0)
     samples: int = Field(default=300, ge=1, le=5000)
     preset: Preset | None = None

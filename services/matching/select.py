@@ -14,7 +14,7 @@ from shared.schemas.grasp import SelectRequest, SelectResponse
 _SCORE = 8
 _SAME_DISTANCE = 1e-9
 _LEAST_SHARE = 0.5
-_NEAR_THE_REST = 0.8
+_NEAR_THE_REST = 0.5
 
 
 def select_grasps(request: SelectRequest) -> SelectResponse:
@@ -25,7 +25,7 @@ def select_grasps(request: SelectRequest) -> SelectResponse:
     the points between the pads and half of those that each pad touches. Best is the
     highest score times the share of the points between the pads that lie in the region:
     the chance to lift the object by the right part, near whose border the share falls.
-    A grasp whose way in comes near the rest of the object is worth a fifth less: where
+    The odds of a grasp whose way in comes near the rest of the object count half: where
     another is about as good, the parts that the task needs stay free. Equals keep the order
     of the request. `outside_region` counts all candidates that hold another part, also
     beyond `max_grasps`. Where rejected hand poses are asked for, see `left_out`.
@@ -51,7 +51,8 @@ def select_grasps(request: SelectRequest) -> SelectResponse:
         raise EmptyCloud(f"there are {len(grasps)} grasps, but no object points", field="points")
     shares = _checked_shares(request)
     inside = holds_region(grasps[:, :3], points, region) & (shares >= _LEAST_SHARE).all(axis=1)
-    worth = grasps[:, _SCORE] * shares[:, 0] * _checked_way(request)
+    odds, against = grasps[:, _SCORE] * _checked_way(request), 1 - grasps[:, _SCORE]
+    worth = odds / (odds + against) * shares[:, 0]
     order = np.argsort(-worth, kind="stable")
     chosen = order[inside[order]][: request.max_grasps]
     return SelectResponse(
@@ -73,7 +74,7 @@ def _checked_shares(request: SelectRequest) -> NDArray[np.float64]:
 
 
 def _checked_way(request: SelectRequest) -> NDArray[np.float64]:
-    """Return what the way in of each grasp (G,) makes of its worth."""
+    """Return what the way in of each grasp (G,) makes of its odds."""
     clear = request.keeps_clear
     if clear is None:
         return np.ones(len(request.grasps))

@@ -35,8 +35,8 @@ class GraspParameters(TypedDict, total=False):
     recovery: EmsParameters | Mapping[str, Any] | str | None
     """Parameters of the method `ems`: a message, or a mapping or JSON of its names."""
     explain: bool
-    rehearsal: Rehearsing
-    """Whether grasps are tried in simulation before they are answered."""
+    rehearsal: Rehearsing | None
+    """Whether grasps are tried in simulation before they are answered; None: the backend's way."""
     rejected: int
     """How many hand poses that were left out the answer holds, `answer.rejected`; 0: none."""
     frame_id: str

@@ -7,20 +7,23 @@ import os
 import time
 import zlib
 from concurrent.futures import ThreadPoolExecutor
+from typing import Any
 
 import httpx
 import numpy as np
 import pytest
 
 import shared.service.client
-from services.gateway.settings import STAGES
+from services.gateway.app import create_app
+from services.gateway.settings import STAGES, GatewaySettings
 from shared.errors import InternalError, InvalidInput, TooBusy
 from shared.wire import JSON, NPZ
 from shared.wire.npz import write_npz
 from tests.faults.conftest import DEADLINE_S, SLACK_S, Backend
 from tests.faults.faulty import Exchange, Fault
-from tests.support.asking import failed
+from tests.support.asking import REQUESTS, failed
 from tests.support.samples import sample_path
+from tests.support.serving import serving
 
 every_stage = pytest.mark.parametrize("stage", STAGES)
 AT_ONCE_S = DEADLINE_S - 0.1
@@ -314,3 +317,15 @@ def test_grasps_are_answered_unrehearsed_where_the_simulation_fails(
     status = {"stage_unavailable": 503, "deadline_exceeded": 504}[code]
     failed(refused, status, code, "execution")
     backend.works("execution")
+
+
+def test_a_gateway_rehearses_in_its_own_way_what_does_not_say(backend: Backend) -> None:
+    urls: dict[str, Any] = {f"{name}_url": stage.url for name, stage in backend.stages.items()}
+    settings = GatewaySettings(**urls, samples=20, rehearsal="always")
+    with serving(create_app(settings)) as url, httpx.Client(base_url=url, timeout=60) as http:
+        told = [
+            http.post("/grasp", json={**REQUESTS["perception"][1], **more}).json()
+            for more in ({}, {"rehearsal": "never"})
+        ]
+    assert told[0]["rehearsal"]["tried"] > 0
+    assert "rehearsal" not in told[1]

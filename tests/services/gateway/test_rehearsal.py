@@ -12,6 +12,7 @@ import pytest
 from numpy.typing import NDArray
 
 from services.gateway.rehearsal import AT_MOST, Rehearsed, after, rehearse
+from services.gateway.settings import GatewaySettings
 from shared.errors import InvalidInput, SpargeError, StageUnavailable
 from shared.schemas.execution import ExecuteResponse, Outcome
 from shared.schemas.grasp import ProposeResponse, SelectResponse
@@ -150,10 +151,11 @@ def test_a_failure_leaves_the_order_as_it_is_known_and_is_told(error: SpargeErro
 def test_scores_stay_probabilities_in_the_order_of_the_outcomes(score: float) -> None:
     scores = {outcome: after(score, [outcome]) for outcome in OUTCOMES}
     assert all(0 <= each <= 1 for each in scores.values())
-    assert scores["held"] >= score >= scores["slipped_in_shake"] >= scores["slipped_in_lift"]
+    assert scores["held"] >= scores["slipped_in_shake"] >= scores["slipped_in_lift"]
+    assert scores["missed"] == scores["slipped_in_lift"]
     if 0 < score < 0.9:
-        assert scores["held"] > score > scores["slipped_in_shake"] > scores["missed"]
-        assert after(score, HELD) > scores["held"]
+        assert after(score, HELD) > scores["held"] > score > scores["missed"]
+        assert scores["held"] > scores["slipped_in_shake"] > scores["missed"]
         assert after(score, ("missed", "held")) == pytest.approx(after(score, ("held", "missed")))
 
 
@@ -217,3 +219,12 @@ def test_an_unknown_way_to_rehearse_is_told(backend: Client) -> None:
     response = asked(backend, "bottle", "pouring", rehearsal="sometimes")
     assert response.status_code == 422
     assert "rehearsal" in response.text
+
+
+def test_a_backends_own_way_is_one_of_three(monkeypatch: pytest.MonkeyPatch) -> None:
+    assert GatewaySettings().rehearsal == "never"
+    monkeypatch.setenv("SPARGE_GATEWAY_REHEARSAL", "auto")
+    assert GatewaySettings().rehearsal == "auto"
+    monkeypatch.setenv("SPARGE_GATEWAY_REHEARSAL", "sometimes")
+    with pytest.raises(ValueError, match="rehearsal"):
+        GatewaySettings()

@@ -67,7 +67,7 @@ def test_defaults_are_the_contracts() -> None:
         "method": None,
         "recovery": None,
         "explain": True,
-        "rehearsal": "never",
+        "rehearsal": None,
         "rejected": 0,
         "frame_id": "camera",
         "format": "sparge",

@@ -73,6 +73,14 @@ def test_a_way_in_that_comes_near_the_rest_goes_behind_its_equals() -> None:
     clear = np.array([False, True, True])
     assert select(grasps, keeps_clear=clear).indices.tolist() == [1, 0, 2]
     assert select(grasps, keeps_clear=~clear).indices.tolist() == [0, 1, 2]
+    assert select(grasps_at((0.01, 0.5), (0.02, 0.34)), keeps_clear=clear[:2]).indices[0] == 1
+    assert select(grasps_at((0.01, 0.5), (0.02, 0.33)), keeps_clear=clear[:2]).indices[0] == 0
+
+
+def test_one_that_hardly_fails_stays_before_one_that_fails_five_times_as_often() -> None:
+    grasps = grasps_at((0.01, 0.98), (0.02, 0.9), (0.03, 1.0), (0.04, 0.0))
+    near = np.array([False, True, False, False])
+    assert select(grasps, keeps_clear=near).indices.tolist() == [2, 0, 1, 3]
 
 
 def test_nothing_in_nothing_out() -> None:
