@@ -24,5 +24,6 @@ def backend(tmp_path_factory: pytest.TempPathFactory) -> Iterator[Client]:
         knowledge = str(tmp_path_factory.mktemp("knowledge"))
         environment.setenv("SPARGE_REASONING_KNOWLEDGE_DIR", knowledge)
         environment.setenv("SPARGE_GATEWAY_QUEUE_WAIT_S", "300")  # tests want answers
+        environment.setenv("SPARGE_GATEWAY_REHEARSAL_TIME_S", "300")
         with in_process(create_app()) as served:
             yield served

@@ -299,7 +299,9 @@ class Pipeline:
     ) -> Rehearsed:
         """Return the grasps that hold the region, those in doubt rehearsed."""
         parameters = request.parameters
-        until = time.monotonic() + min(self._settings.rehearsal_time_s, remaining_s() / 2)
+        rehearsing = parameters.rehearsal or self._settings.rehearsal
+        some_s = min(self._settings.rehearsal_time_s, remaining_s() / 2)
+        until = time.monotonic() + (remaining_s() if rehearsing == "always" else some_s)
 
         async def select(grasps: Array) -> SelectResponse:
             return await run.call(
@@ -331,5 +333,4 @@ class Pipeline:
             with within(until - time.monotonic()):
                 return [await run.call(EXECUTE, each, REHEARSAL) for each in asked]
 
-        rehearsing = parameters.rehearsal or self._settings.rehearsal
         return await rehearse(proposed, select, attempt, rehearsing)

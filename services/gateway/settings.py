@@ -41,7 +41,8 @@ class GatewaySettings(ServiceSettings):
         Whether grasps are tried in simulation before they are answered, where a request does not
         say: `auto`, those in doubt; `never`; `always`.
     rehearsal_time_s : float
-        How long grasps may be rehearsed for one answer; those in doubt after that are not.
+        How long grasps may be rehearsed for one answer with `auto`; those in doubt after that are
+        not.
     samples : int
         Points at which grasps are sought (thesis 6.4.1: 300).
     preset : str or None
