@@ -303,7 +303,7 @@ class Pipeline:
         some_s = min(self._settings.rehearsal_time_s, remaining_s() / 2)
         until = time.monotonic() + (remaining_s() if rehearsing == "always" else some_s)
 
-        async def select(grasps: Array) -> SelectResponse:
+        async def select(grasps: Array, at_least: int) -> SelectResponse:
             return await run.call(
                 SELECT,
                 SelectRequest(
@@ -312,7 +312,7 @@ class Pipeline:
                     grasps=grasps,
                     on_region=proposed.on_focus,
                     keeps_clear=proposed.keeps_clear,
-                    max_grasps=parameters.max_grasps,
+                    max_grasps=max(parameters.max_grasps, at_least),
                     rejected=parameters.rejected,
                     rejected_poses=proposed.rejected_poses,
                     rejected_reasons=proposed.rejected_reasons,

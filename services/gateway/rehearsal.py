@@ -18,7 +18,7 @@ from shared.schemas.execution import ExecuteResponse, Outcome
 from shared.schemas.grasp import ProposeResponse, SelectResponse
 from shared.schemas.rehearsal import Rehearsal, Rehearsing
 
-Select = Callable[[NDArray[np.float64]], Awaitable[SelectResponse]]
+Select = Callable[[NDArray[np.float64], int], Awaitable[SelectResponse]]
 Try = Callable[[NDArray[np.float64]], Awaitable[Sequence[ExecuteResponse]]]
 
 AT_MOST = 5
@@ -75,7 +75,8 @@ async def rehearse(
     ----------
     proposed : ProposeResponse
     select : callable
-        Orders grasp rows (G, 9) and keeps those that hold the region.
+        Orders grasp rows (G, 9) and keeps those that hold the region: as many as are to be
+        answered, or at least so many.
     attempt : callable
         Simulates one on every shape that the object may have.
     rehearsing : str
@@ -85,12 +86,14 @@ async def rehearse(
     SpargeError
         From `select`; from `attempt` only where rehearsing is `always`.
     """
-    known = Rehearsed(await select(proposed.grasps))
+    if rehearsing == "never":
+        return Rehearsed(await select(proposed.grasps, 0))
+    known = Rehearsed(await select(proposed.grasps, AT_MOST))
     rows = known.selected.indices.tolist()
     if rehearsing == "auto":
         rows = [row for row in rows if proposed.doubtful[row]] if _in_doubt(proposed, rows) else []
     grasps = proposed.grasps.copy()
-    for row in rows[: 0 if rehearsing == "never" else AT_MOST]:
+    for row in rows[:AT_MOST]:
         try:
             came = tuple(each.outcome for each in await attempt(grasps[row]))
         except SpargeError as error:
@@ -102,8 +105,7 @@ async def rehearse(
         grasps[row, _SCORE] = after(grasps[row, _SCORE], came)
         if set(came) == {"held"}:
             break
-    if known.outcomes:
-        known.selected = await select(grasps)
+    known.selected = await select(grasps, 0)
     return known
 
 

@@ -3,6 +3,7 @@
 from __future__ import annotations
 
 import asyncio
+import functools
 import io
 from typing import Any, get_args
 
@@ -39,8 +40,8 @@ def proposal(scores: list[float], doubtful: list[bool] | None = None) -> Propose
     )
 
 
-async def select(grasps: Array) -> SelectResponse:
-    order = np.argsort(-grasps[:, 8], kind="stable")
+async def select(grasps: Array, at_least: int, wanted: int = 100) -> SelectResponse:
+    order = np.argsort(-grasps[:, 8], kind="stable")[: max(wanted, at_least)]
     return SelectResponse(grasps=grasps[order], indices=order.astype(np.int32), outside_region=0)
 
 
@@ -104,6 +105,17 @@ def test_one_that_slips_and_still_is_the_best_is_answered() -> None:
     known = rehearsed(proposal([0.89, 0.1]), stage)
     assert stage.tried == [0, 1]
     assert known.selected.indices.tolist() == [0, 1]
+
+
+def test_one_answered_grasp_is_the_best_of_those_that_were_tried() -> None:
+    one = functools.partial(select, wanted=1)
+    asked = proposal([0.80, 0.78, 0.75])
+    known = asyncio.run(rehearse(asked, one, Stage(LOST, HELD), "auto"))
+    assert known.selected.indices.tolist() == [1]
+    assert known.of_answered == (HELD,)
+    assert known.report == Rehearsal(tried=2)
+    untouched = asyncio.run(rehearse(proposal([0.99, 0.9], [False, True]), one, Stage(), "auto"))
+    assert untouched.selected.indices.tolist() == [0]
 
 
 def test_only_grasps_in_doubt_are_tried_and_none_where_the_best_is_not() -> None:
