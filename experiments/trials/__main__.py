@@ -28,6 +28,9 @@ def main(arguments: list[str] | None = None) -> None:
     parser.add_argument("--views", type=int, default=2, help="of each object")
     parser.add_argument("--seed", type=int, default=0)
     parser.add_argument("--workers", type=int, default=1, help="processes that ask")
+    parser.add_argument(
+        "--rehearse", action="store_true", help="try each grasp on what was recovered, as well"
+    )
     given = parser.parse_args(arguments)
     logging.basicConfig(level=logging.INFO, format="%(message)s")
     logging.getLogger("httpx").setLevel(logging.WARNING)
@@ -42,6 +45,7 @@ def main(arguments: list[str] | None = None) -> None:
         views=given.views,
         seed=given.seed,
         workers=given.workers,
+        rehearse=given.rehearse,
     )
 
 

@@ -61,6 +61,8 @@ class Collector:
         As for `try_out`.
     judge : callable
         Makes of a backend what judges a grasp.
+    rehearse : bool
+        As for `try_out`.
     """
 
     folder: Path
@@ -71,6 +73,7 @@ class Collector:
     grippers: tuple[str, ...]
     blind: tuple[str, ...]
     judge: Callable[[Sparge], Judge]
+    rehearse: bool = False
 
     def path(self, job: Job, view: int) -> Path:
         return self.folder / NAME.format(class_name=job.class_name, number=job.number, view=view)
@@ -103,6 +106,7 @@ class Collector:
                 grippers=self.grippers,
                 each=self.each,
                 seed=self.seed,
+                rehearse=self.rehearse,
             )
 
 
@@ -138,6 +142,7 @@ def collect(
     seed: int,
     workers: int,
     judge: Callable[[Sparge], Judge] = by_backend,
+    rehearse: bool = False,
 ) -> None:
     """Write a file for every class and round that has none yet."""
     console = Console(stderr=True)
@@ -154,6 +159,7 @@ def collect(
                 tuple(each.name for each in listed if each.kind == "parallel"),
                 tuple(each.name for each in definitions),
                 judge,
+                rehearse,
             )
             jobs = [Job(name, number) for number in rounds for name in CLASSES]
             missing = [job for job in jobs if not work.is_done(job)]

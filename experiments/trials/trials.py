@@ -15,7 +15,8 @@ A trial's file holds what the grasp proposal is asked with, and what came of its
     lifted, held (G,) bool    lifted off the table; kept when shaken and tilted, too
     outcome (G,) str          of POST /execute
     rehearsed (G, 3) str      the same on what may be believed of it (`BELIEVED` of
-                              shared.schemas.execution); empty where it came to no end
+                              shared.schemas.execution); empty where it came to no end or
+                              was not wanted
     object_class () str, number () int, view () int, sigma_at_1m () float
     mass () float             kg
 """
@@ -36,7 +37,7 @@ from experiments.trials.scenes import Scene
 from shared.client import GraspResult, Sparge
 from shared.errors import DeadlineExceeded, InvalidInput, SpargeError
 from shared.rehearsal import rehearsals
-from shared.schemas.execution import ExecuteRequest, ExecuteResponse
+from shared.schemas.execution import BELIEVED, ExecuteRequest, ExecuteResponse
 from shared.schemas.primitive import superquadric_rows
 
 Array = NDArray[np.float64]
@@ -57,6 +58,7 @@ def try_out(
     grippers: Sequence[str],
     each: int,
     seed: int,
+    rehearse: bool = False,
 ) -> dict[str, NDArray[Any]] | None:
     """Return the arrays of a scene's trials; None where no question gets a grasp.
 
@@ -76,6 +78,8 @@ def try_out(
     each : int
         Grasps that are tried for each question.
     seed : int
+    rehearse : bool
+        Try each grasp on what was recovered, too, which takes three times as long again.
 
     Raises
     ------
@@ -102,6 +106,8 @@ def try_out(
     ]
     rehearsed = [
         [_rehearsed(judge, each) for each in _rehearsals(scene, row, *asked[index][:2])]
+        if rehearse
+        else [""] * len(BELIEVED)
         for index, row in zip(question, grasps, strict=True)
     ]
     done = np.array([each is not None for each in happened], dtype=np.bool_)

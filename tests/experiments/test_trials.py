@@ -133,9 +133,11 @@ def test_a_backend_that_never_gets_ready_is_an_error() -> None:
         wait_until_ready("http://127.0.0.1:9", 0.0)
 
 
-@pytest.mark.parametrize("comes_to_an_end", [True, False])
-def test_each_grasp_is_rehearsed_on_what_was_recovered(
-    sparge: Sparge, comes_to_an_end: bool
+@pytest.mark.parametrize(
+    ("rehearse", "comes_to_an_end"), [(True, True), (True, False), (False, True)]
+)
+def test_each_grasp_is_rehearsed_on_what_was_recovered_where_that_is_wanted(
+    sparge: Sparge, rehearse: bool, comes_to_an_end: bool
 ) -> None:
     scene = draw_scene(body_of(draw_object("hammer", 0, 0)), 0, 0)
     rehearsals: list[ExecuteRequest] = []
@@ -163,13 +165,15 @@ def test_each_grasp_is_rehearsed_on_what_was_recovered(
         grippers=("panda",),
         each=2,
         seed=0,
+        rehearse=rehearse,
     )
     assert arrays is not None
-    assert len(rehearsals) == 3 * len(arrays["grasps"])
+    assert len(rehearsals) == (3 if rehearse else 0) * len(arrays["grasps"])
     assert arrays["rehearsed"].shape == (len(arrays["grasps"]), 3)
     assert set(arrays["outcome"]) == {"slipped_in_lift"}
-    assert set(arrays["rehearsed"].ravel()) == {"held" if comes_to_an_end else ""}
-    for request, row in zip(rehearsals, np.repeat(arrays["grasps"], 3, axis=0), strict=True):
+    assert set(arrays["rehearsed"].ravel()) == {"held" if rehearse and comes_to_an_end else ""}
+    rows = np.repeat(arrays["grasps"], 3, axis=0)[: len(rehearsals)]
+    for request, row in zip(rehearsals, rows, strict=True):
         assert request.pose.position == pytest.approx(row[:3])
         assert len(request.primitives) == len(arrays["superquadrics"])
         assert request.mass is None, "what it weighs is not known yet"

@@ -1,7 +1,7 @@
 """`python -m services.grasp_proposal.training.rehearsal TRIALS`: what a rehearsal tells.
 
-TRIALS is what `python -m experiments.trials` writes, best of objects that the shipped network
-never saw: `--first` beyond the rounds that it was trained on.
+TRIALS is what `python -m experiments.trials --rehearse` writes, best of objects that the shipped
+network never saw: `--first` beyond the rounds that it was trained on.
 """
 
 from __future__ import annotations
@@ -18,6 +18,7 @@ from scipy.optimize import Bounds, brentq
 from services.grasp_proposal.learned import sigmoid
 from services.grasp_proposal.training.lessons import Lessons, read_lessons
 from services.grasp_proposal.training.order import fit_pairs, pairs
+from shared.errors import InvalidInput
 
 Array = NDArray[np.float64]
 
@@ -65,8 +66,16 @@ def right_order(order: Array, truth: NDArray[np.bool_], view: NDArray[np.intp]) 
 
 
 def report(lessons: Lessons) -> str:
-    """Return, as Markdown, what rehearsals tell, and how well with what share of pairs."""
+    """Return, as Markdown, what rehearsals tell, and how well with what share of pairs.
+
+    Raises
+    ------
+    InvalidInput
+        No grasp in doubt was rehearsed.
+    """
     mine = lessons.take((lessons.rehearsed != "").all(axis=1))
+    if not len(mine):
+        raise InvalidInput("no trial was rehearsed; `python -m experiments.trials --rehearse` does")
     scores = np.clip(mine.score, _TINY, 1 - _TINY)
     logits = np.log(scores / (1 - scores))
     counts = counted(mine.rehearsed)

@@ -15,6 +15,7 @@ from services.grasp_proposal.training.rehearsal import (
     report,
     right_order,
 )
+from shared.errors import InvalidInput
 
 Array = NDArray[np.float64]
 
@@ -77,6 +78,12 @@ def test_the_report_leaves_out_what_was_not_rehearsed() -> None:
     names = ("score", "score and superquadrics", "score and all shapes")
     shares = [float(rows[name][1]) for name in names]
     assert 0.5 < shares[0] < shares[1] < shares[2]
+
+
+def test_trials_without_rehearsals_are_told() -> None:
+    lessons, _, _ = drawn(TRUTH)
+    with pytest.raises(InvalidInput, match="no trial was rehearsed"):
+        report(Lessons(**{**vars(lessons), "rehearsed": np.full((GRASPS, 3), "")}))
 
 
 def test_outcomes_are_counted() -> None:
