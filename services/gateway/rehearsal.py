@@ -89,11 +89,12 @@ async def rehearse(
     if rehearsing == "never":
         return Rehearsed(await select(proposed.grasps, 0))
     known = Rehearsed(await select(proposed.grasps, AT_MOST))
-    rows = known.selected.indices.tolist()
+    rows = known.selected.indices
     if rehearsing == "auto":
-        rows = [row for row in rows if proposed.doubtful[row]] if _in_doubt(proposed, rows) else []
+        doubtful = proposed.doubtful[rows]
+        rows = rows[doubtful & doubtful[:1]]  # none, unless the best one is
     grasps = proposed.grasps.copy()
-    for row in rows[:AT_MOST]:
+    for row in rows[:AT_MOST].tolist():
         try:
             came = tuple(each.outcome for each in await attempt(grasps[row]))
         except SpargeError as error:
@@ -107,11 +108,6 @@ async def rehearse(
             break
     known.selected = await select(grasps, 0)
     return known
-
-
-def _in_doubt(proposed: ProposeResponse, rows: Sequence[int]) -> bool:
-    """Whether the best grasp is."""
-    return bool(rows) and bool(proposed.doubtful[rows[0]])
 
 
 def after(score: float, outcomes: Sequence[Outcome]) -> float:

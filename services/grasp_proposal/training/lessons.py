@@ -24,6 +24,7 @@ from shared.errors import InvalidInput
 from shared.geometry.rotation import matrix_from_quaternion
 from shared.geometry.se3 import inverse, transform_points
 from shared.grippers import load_grippers
+from shared.schemas.execution import BELIEVED
 from shared.schemas.grasp import ProposeRequest
 from shared.schemas.gripper import ParallelGripper
 from shared.schemas.scene import SupportPlane
@@ -147,7 +148,7 @@ def _lessons(arrays: Arrays, question: int, mine: Mask, hand: Hand) -> Lessons:
     rows = int(some.sum())
     scores = arrays["grasps"][mine][some][:, -1]
     told = doubtful(workspace, hand, contacts, scores, sight)
-    rehearsed = arrays.get("rehearsed", np.full((len(mine), 3), ""))
+    rehearsed = arrays.get("rehearsed", np.full((len(mine), len(BELIEVED)), ""))
     return Lessons(
         images=images,
         numbers=numbers,

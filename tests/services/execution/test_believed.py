@@ -23,11 +23,11 @@ CONE = (0.04, 0.01)
 BOTH = pytest.mark.parametrize("how", ["turned", "reflected"])
 
 
-def near_half(radii: tuple[float, float] = CONE, flat: float = 1.0) -> Array:
-    """Return the side towards the sensor of a standing cone, maybe an oval one."""
+def near_half() -> Array:
+    """Return the side of the standing cone that is towards the sensor."""
     turn, height = np.meshgrid(np.linspace(-1.6, 1.6, 60), np.linspace(0, HEIGHT, 80))
-    radius = radii[0] + (radii[1] - radii[0]) * height / HEIGHT
-    points = np.stack([-radius * np.cos(turn), flat * radius * np.sin(turn), height], axis=-1)
+    radius = CONE[0] + (CONE[1] - CONE[0]) * height / HEIGHT
+    points = np.stack([-radius * np.cos(turn), radius * np.sin(turn), height], axis=-1)
     return points.reshape(-1, 3)
 
 
