@@ -60,6 +60,7 @@ def rehearsals(
             gripper=gripper,
             actor="hand",
             strict=True,
+            brisk=True,
             heading=(heading_x, heading_y, heading_z) if somewhere else None,
         )
         for believed in BELIEVED

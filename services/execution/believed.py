@@ -2,17 +2,16 @@
 
 A superquadric is round where a bottle's cap is a cone, and straight where a handle swells. The
 points that were seen are none of this, but half of them is missing. Objects are mostly
-symmetric: a part's missing half is the seen one, turned by half about the part's axis, or
-reflected away from the sensor. Neither is true, nor is the superquadric, but what holds all
-three is likely to hold the object (docs/decisions/0032-rehearsal.md).
+symmetric: a part's missing half is the seen one, reflected away from the sensor. That is not
+true, nor is the superquadric, but what holds both is likely to hold the object
+(docs/decisions/0032-rehearsal.md).
 """
 
 from __future__ import annotations
 
 import itertools
 from collections.abc import Sequence
-from functools import lru_cache
-from typing import Literal
+from functools import cache, lru_cache
 
 import numpy as np
 from numpy.typing import NDArray
@@ -23,7 +22,6 @@ from shared.geometry.rotation import unit
 from shared.superquadric import Superquadric, radial_distance
 
 Array = NDArray[np.float64]
-Completion = Literal["turned", "reflected"]
 
 SLAB = 0.02
 """Metres along the axis: a part is cut into convex slabs of about this, so that it may taper."""
@@ -31,8 +29,8 @@ OVERLAP = 0.002
 """Metres by which neighbouring slabs share points."""
 FEWEST = 10
 """Points that make a slab."""
-MOST = 1500
-"""Points of a slab that its hull is made of, evenly taken."""
+DIRECTIONS = 100
+"""A slab's hull is made of its outermost points in so many directions, evenly spread."""
 LONG = 1.5
 """A part is long, or flat, whose axis is so many times the next one, or the next so many times
 it; the axis of others is the object's."""
@@ -43,7 +41,7 @@ TAIL = 0.5
 
 
 def completed(
-    points: Array, vectors: Sequence[Sequence[float]], viewpoint: Array, how: Completion
+    points: Array, vectors: Sequence[Sequence[float]], viewpoint: Array
 ) -> list[ConvexPart]:
     """Return the convex parts of an object (N, 3) whose superquadrics are known; maybe none.
 
@@ -53,17 +51,15 @@ def completed(
     vectors : sequence of sequence of float
         Of Eq. 3.3; each point belongs to the one whose surface is nearest.
     viewpoint : (3,) array
-    how : str
+        Of the sensor.
     """
     held = np.ascontiguousarray(points)
     rows = np.asarray(vectors, dtype=np.float64)
-    return list(_completed(held.tobytes(), rows.tobytes(), viewpoint.tobytes(), how))
+    return list(_completed(held.tobytes(), rows.tobytes(), viewpoint.tobytes()))
 
 
 @lru_cache(maxsize=8)
-def _completed(
-    points: bytes, vectors: bytes, viewpoint: bytes, how: Completion
-) -> tuple[ConvexPart, ...]:
+def _completed(points: bytes, vectors: bytes, viewpoint: bytes) -> tuple[ConvexPart, ...]:
     seen = np.frombuffer(points).reshape(-1, 3)
     bodies = [Superquadric.from_vector(row) for row in np.frombuffer(vectors).reshape(-1, 12)]
     nearest = np.argmin([np.abs(radial_distance(body, seen)) for body in bodies], axis=0)
@@ -74,7 +70,7 @@ def _completed(
         if len(own) >= FEWEST:
             axis = _axis(body, axes[:, 0])
             sight = unit(body.position - np.frombuffer(viewpoint))
-            both = np.vstack([own, _other_half(own, axis, sight, how)])
+            both = np.vstack([own, _reflected(own, axis, sight)])
             parts += _slabs(both + body.position, axis)
     return tuple(parts)
 
@@ -90,11 +86,8 @@ def _axis(body: Superquadric, object_axis: Array) -> Array:
     return object_axis
 
 
-def _other_half(own: Array, axis: Array, sight: Array, how: Completion) -> Array:
+def _reflected(own: Array, axis: Array, sight: Array) -> Array:
     """Return points (N, 3) about a part's centre as they are on its other side."""
-    along = (own @ axis)[:, None] * axis
-    if how == "turned":
-        return 2 * along - own
     across = sight - (sight @ axis) * axis
     away = unit(across) if np.linalg.norm(across) > ASIDE else sight
     return np.asarray(own - 2 * (own @ away)[:, None] * away)
@@ -109,5 +102,19 @@ def _slabs(points: Array, axis: Array) -> list[ConvexPart]:
     for begin, end in itertools.pairwise(cuts):
         slab = points[(place >= begin - OVERLAP) & (place <= end + OVERLAP)]
         if len(slab) >= FEWEST:
-            hulls.append(convex_hull(slab[:: -(-len(slab) // MOST)]))
+            hulls.append(convex_hull(_outermost(slab)))
     return [hull for hull in hulls if hull is not None]
+
+
+def _outermost(points: Array) -> Array:
+    """Return those of the points (N, 3) that lie furthest out in some direction."""
+    return np.asarray(points[np.unique((points @ _directions().T).argmax(axis=0))])
+
+
+@cache
+def _directions() -> Array:
+    """Return unit vectors (D, 3) on a Fibonacci lattice."""
+    index = np.arange(DIRECTIONS) + 0.5
+    height, turn = 1 - 2 * index / DIRECTIONS, np.pi * (1 + 5**0.5) * index
+    level = np.sqrt(1 - height**2)
+    return np.column_stack([level * np.cos(turn), level * np.sin(turn), height])

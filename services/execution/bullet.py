@@ -11,6 +11,8 @@ import pybullet
 
 TIME_STEP = 1 / 240
 """Simulated seconds per step."""
+SOLVER_ITERATIONS = 150
+"""Of each step; with fewer, a held object creeps out of the pads."""
 
 
 class Bullet:
@@ -30,7 +32,7 @@ class Bullet:
 
 
 @contextmanager
-def physics() -> Iterator[Bullet]:
+def physics(iterations: int = SOLVER_ITERATIONS) -> Iterator[Bullet]:
     """Yield an empty world with gravity along -z; it is gone afterwards, whatever happens."""
     client = pybullet.connect(pybullet.DIRECT)
     try:
@@ -38,7 +40,7 @@ def physics() -> Iterator[Bullet]:
         bullet.setGravity(0, 0, -9.81)
         bullet.setPhysicsEngineParameter(
             fixedTimeStep=TIME_STEP,
-            numSolverIterations=150,  # fewer, and a held object creeps out of the pads
+            numSolverIterations=iterations,
             deterministicOverlappingPairs=1,
             enableFileCaching=0,  # it would keep every mesh of every request
         )

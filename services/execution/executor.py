@@ -2,6 +2,7 @@
 
 from __future__ import annotations
 
+import contextlib
 import queue
 import threading
 
@@ -33,8 +34,20 @@ class Executor:
         self._closed = threading.Event()
 
     def warm_up(self) -> None:
-        """Start one process; the others start when they are first needed."""
+        """Start one process, so that requests are answered."""
         self._idle.put(self._ready(self._idle.get()))
+
+    def warm_up_others(self) -> None:
+        """Start those that are not yet; each would otherwise start when it is first needed."""
+        idle: list[Simulator | None] = []
+        with contextlib.suppress(queue.Empty):
+            while True:
+                idle.append(self._idle.get_nowait())
+        for place in sorted(idle, key=lambda place: place is None):  # those at hand go back first
+            simulator = place
+            with contextlib.suppress(StageUnavailable):  # who needs it will be told
+                simulator = self._ready(place)
+            self._give_back(simulator)
 
     def execute(self, request: ExecuteRequest) -> ExecuteResponse:
         """Replay a grasp with arm or hand and say whether it lifted the object.

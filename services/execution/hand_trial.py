@@ -45,6 +45,9 @@ class HandTrial:
         Watch the motion.
     side : (3,) array
         Along it the object is shaken, about it it is tilted.
+    pace : float
+        How fast fingers close and the hand lifts, holds and tilts, in usual paces; the approach
+        and the shaking are what they are.
 
     Attributes
     ----------
@@ -63,6 +66,7 @@ class HandTrial:
         strict: bool,
         recorders: Sequence[Recorder] = (),
         side: Array = LEFT,
+        pace: float = 1.0,
     ) -> None:
         self._world = world
         self._hand = hand
@@ -70,6 +74,7 @@ class HandTrial:
         self._strict = strict
         self._recorders = recorders
         self._side = side
+        self._pace = pace
         self.rise = 0.0
         self.lifted = False
         self._steps = round(SETTLE_S / TIME_STEP)
@@ -81,7 +86,7 @@ class HandTrial:
         problem = self._approach() or self._close()
         if problem is not None:
             return problem
-        legs = lift(self._world_from_grasp)
+        legs = self._paced(lift(self._world_from_grasp))
         kept = not self._dropped_during(legs) and self._held()
         self.rise = self._world.rise()
         if not kept:
@@ -90,7 +95,7 @@ class HandTrial:
         if not self._strict:
             return self._kept("lifted")
         high = legs[-1].end
-        moved_about = [*shake(high, self._side), *tilt(high, self._side)]
+        moved_about = [*shake(high, self._side), *self._paced(tilt(high, self._side))]
         if self._dropped_during(moved_about) or not self._held():
             return self._slipped("slipped_in_shake")
         return self._kept("held")
@@ -111,11 +116,14 @@ class HandTrial:
 
     def _close(self) -> Verdict | None:
         self._hand.close()
-        for _ in range(round(CLOSE_S / TIME_STEP)):
+        for _ in range(round(CLOSE_S / self._pace / TIME_STEP)):
             self._step("close")
         self._end_phase("close")
         self._world.release()
         return self._hand.closed(self._world)
+
+    def _paced(self, legs: Sequence[Leg]) -> list[Leg]:
+        return [leg._replace(duration=leg.duration / self._pace) for leg in legs]
 
     def _dropped_during(self, legs: Sequence[Leg]) -> bool:
         """Move along legs; stop and return True as soon as the object is surely lost."""

@@ -2,13 +2,15 @@
 
 from __future__ import annotations
 
+from contextlib import AbstractContextManager
+
 import numpy as np
 from numpy.typing import NDArray
 
 from services.execution.arm import MAX_OPENING, Arm
 from services.execution.arm_trial import ArmTrial
 from services.execution.body import RigidBody, rigid_body
-from services.execution.bullet import physics
+from services.execution.bullet import SOLVER_ITERATIONS, Bullet, physics
 from services.execution.checks import ARMED
 from services.execution.film import film
 from services.execution.flying_cup import FlyingCup
@@ -33,6 +35,8 @@ OPENING_MARGIN = 0.01
 TABLE_TOLERANCE = 0.005
 """A grasp this deep in the table is raised to its surface: planes are not known better."""
 TABLE_CLEARANCE = 0.001
+BRISK_ITERATIONS = 50
+BRISK_PACE = 2.0
 PROPPED = "; the object, which would not stand by itself, was propped up until it was gripped"
 
 
@@ -70,7 +74,7 @@ def _by_arm(request: ExecuteRequest, scene: Scene) -> ExecuteResponse:
         return _refused(inside_table(where, -lowest))
     raised = shifted(grasp, np.array([0.0, 0.0, max(0.0, TABLE_CLEARANCE - lowest)]))
     body = rigid_body(scene.parts, request.mass)
-    with physics() as bullet:
+    with _world_of(request) as bullet:
         world = World(bullet, body)
         world.settle()
         arm = Arm(bullet)
@@ -88,7 +92,7 @@ def _by_hand(
     """Replay a request with the gripper alone."""
     grasp, body = scene.world_from_grasp, rigid_body(scene.parts, request.mass)
     start = approach(grasp).start
-    with physics() as bullet:
+    with _world_of(request) as bullet:
         world = World(bullet, body)
         world.settle()
         hand: FlyingHand | FlyingCup
@@ -98,11 +102,16 @@ def _by_hand(
             opening = min(scene.width + OPENING_MARGIN, gripper.max_opening)
             hand = FlyingHand(bullet, gripper, start, opening)
         recorders = _Recorders(request, world, hand)
-        trial = HandTrial(world, hand, grasp, request.strict, recorders.all, scene.side)
+        pace = BRISK_PACE if request.brisk else 1.0
+        trial = HandTrial(world, hand, grasp, request.strict, recorders.all, scene.side, pace)
         answer = _answer(request, world, trial)
         recording = recorders.of_film()
         answer = _with_motion(answer, request, scene, body, recorders, None)
     return _filmed(answer, request, scene, body, recording, gripper)
+
+
+def _world_of(request: ExecuteRequest) -> AbstractContextManager[Bullet]:
+    return physics(BRISK_ITERATIONS if request.brisk else SOLVER_ITERATIONS)
 
 
 def _answer(request: ExecuteRequest, world: World, trial: ArmTrial | HandTrial) -> ExecuteResponse:

@@ -101,9 +101,9 @@ def scene_from_request(request: ExecuteRequest) -> Scene:
 def _believed(request: ExecuteRequest) -> list[ConvexPart]:
     """Return the parts of an object of which there are primitives, and maybe points."""
     parts: list[ConvexPart] = []
-    if request.points is not None and request.believed != "primitives":
+    if request.points is not None and request.believed == "reflected":
         viewpoint = np.array(request.viewpoint)
-        parts = completed(request.points, request.primitives, viewpoint, request.believed)
+        parts = completed(request.points, request.primitives, viewpoint)
     return parts or parts_of_primitives(request.primitives)
 
 

@@ -27,7 +27,7 @@ class ExecutionSettings(GripperSettings):
 
     model_config = environment("execution")
 
-    workers: int = Field(default=1, ge=1, le=64)
+    workers: int = Field(default=2, ge=1, le=64)
     time_limit_s: float = Field(default=30.0, gt=0)
     film_time_s: float = Field(default=25.0, ge=0)
     queue_wait_s: float = Field(default=20.0, ge=0)

@@ -8,7 +8,7 @@ from __future__ import annotations
 
 import asyncio
 import time
-from collections.abc import Mapping
+from collections.abc import Mapping, Sequence
 from dataclasses import dataclass, field
 
 import numpy as np
@@ -94,16 +94,28 @@ class _Run:
     async def call(
         self, route: Route[Request, Response], request: Request, timed_as: str | None = None
     ) -> Response:
-        name = timed_as or route.service
-        started = time.perf_counter()
+        (answer,) = await self.call_all(route, [request], timed_as or route.service)
+        return answer
+
+    async def call_all(
+        self, route: Route[Request, Response], requests: Sequence[Request], timed_as: str
+    ) -> list[Response]:
+        """Return the answers to requests that are sent at once; all have ended by then."""
+        stage, started = self.stages[route.service], time.perf_counter()
+        calls = (stage.call(route, each, self.deadline_s) for each in requests)
         try:
-            return await self.stages[route.service].call(route, request, self.deadline_s)
+            answers: list[Response] = []
+            for came in await asyncio.gather(*calls, return_exceptions=True):
+                if isinstance(came, BaseException):
+                    raise came
+                answers.append(came)
+            return answers
         except SpargeError as error:
             self.metrics.failed(route.service, error.code)
             raise
         finally:
             spent = 1e3 * (time.perf_counter() - started)
-            self.timings_ms[name] = self.timings_ms.get(name, 0.0) + spent
+            self.timings_ms[timed_as] = self.timings_ms.get(timed_as, 0.0) + spent
 
 
 class Pipeline:
@@ -300,6 +312,8 @@ class Pipeline:
         """Return the grasps that hold the region, those in doubt rehearsed."""
         parameters = request.parameters
         rehearsing = parameters.rehearsal or self._settings.rehearsal
+        if not parameters.max_grasps:
+            rehearsing = "never"
         some_s = min(self._settings.rehearsal_time_s, remaining_s() / 2)
         until = time.monotonic() + (remaining_s() if rehearsing == "always" else some_s)
 
@@ -331,6 +345,6 @@ class Pipeline:
                 gripper=parameters.gripper,
             )
             with within(until - time.monotonic()):
-                return [await run.call(EXECUTE, each, REHEARSAL) for each in asked]
+                return await run.call_all(EXECUTE, asked, REHEARSAL)
 
         return await rehearse(proposed, select, attempt, rehearsing)

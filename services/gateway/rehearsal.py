@@ -6,7 +6,7 @@ of the shape that the answer believes in can tell (docs/decisions/0032-rehearsal
 
 from __future__ import annotations
 
-from collections.abc import Awaitable, Callable, Sequence
+from collections.abc import Awaitable, Callable, Mapping, Sequence
 from dataclasses import dataclass, field
 from types import MappingProxyType
 
@@ -14,20 +14,22 @@ import numpy as np
 from numpy.typing import NDArray
 
 from shared.errors import SpargeError
-from shared.schemas.execution import ExecuteResponse, Outcome
+from shared.schemas.execution import BELIEVED, ExecuteResponse, Outcome
 from shared.schemas.grasp import ProposeResponse, SelectResponse
 from shared.schemas.rehearsal import Rehearsal, Rehearsing
 
-Select = Callable[[NDArray[np.float64], int], Awaitable[SelectResponse]]
-Try = Callable[[NDArray[np.float64]], Awaitable[Sequence[ExecuteResponse]]]
+Array = NDArray[np.float64]
+Select = Callable[[Array, int], Awaitable[SelectResponse]]
+Try = Callable[[Array], Awaitable[Sequence[ExecuteResponse]]]
 
-AT_MOST = 5
+AT_MOST = 2
 """Grasps that are rehearsed for one answer."""
+HELD: tuple[Outcome, ...] = tuple("held" for _ in BELIEVED)
 _SCORE = 8
 _EVIDENCE: MappingProxyType[Outcome, float] = MappingProxyType(
-    {"held": 0.70, "slipped_in_shake": 0.0}
+    {"held": 1.19, "slipped_in_shake": 0.33}
 )
-_LOST = -0.57
+_LOST = -0.86
 """What each outcome, the last all others, adds to the logit of lifting: as
 `python -m services.grasp_proposal.training.rehearsal` printed it."""
 
@@ -68,8 +70,9 @@ async def rehearse(
 ) -> Rehearsed:
     """Where the best grasp is in doubt, try it and the next that are; answer the best by then.
 
-    What comes of a grasp is evidence that raises or lowers its score. One that is held on every
-    shape ends the search: there is hardly a better one.
+    What comes of a grasp is evidence that raises or lowers its score. Always the one is tried next
+    that would be the best if all that are untried were held; when that one has been tried, it is
+    the best, whatever would come of the others.
 
     Parameters
     ----------
@@ -86,27 +89,36 @@ async def rehearse(
     SpargeError
         From `select`; from `attempt` only where rehearsing is `always`.
     """
+    grasps = proposed.grasps
     if rehearsing == "never":
-        return Rehearsed(await select(proposed.grasps, 0))
-    known = Rehearsed(await select(proposed.grasps, AT_MOST))
+        return Rehearsed(await select(grasps, 0))
+    known = Rehearsed(await select(grasps, AT_MOST))
     rows = known.selected.indices
     if rehearsing == "auto":
         doubtful = proposed.doubtful[rows]
         rows = rows[doubtful & doubtful[:1]]  # none, unless the best one is
-    grasps = proposed.grasps.copy()
-    for row in rows[:AT_MOST].tolist():
+    tried: dict[int, tuple[Outcome, ...]] = {row: HELD for row in rows[:AT_MOST].tolist()}
+    while tried:
+        best = int((await select(rescored(grasps, tried), 1)).indices[0])
+        if best in known.outcomes or best not in tried:
+            break
         try:
-            came = tuple(each.outcome for each in await attempt(grasps[row]))
+            came = tuple(each.outcome for each in await attempt(grasps[best]))
         except SpargeError as error:
             if rehearsing == "always":
                 raise
             known.stopped = error.code
             break
-        known.outcomes[row] = came
-        grasps[row, _SCORE] = after(grasps[row, _SCORE], came)
-        if set(came) == {"held"}:
-            break
-    known.selected = await select(grasps, 0)
+        tried[best] = known.outcomes[best] = came
+    known.selected = await select(rescored(grasps, known.outcomes), 0)
+    return known
+
+
+def rescored(grasps: Array, outcomes: Mapping[int, Sequence[Outcome]]) -> Array:
+    """Return grasp rows (G, 9) with the scores that they have in the light of rehearsals."""
+    known = grasps.copy()
+    for row, came in outcomes.items():
+        known[row, _SCORE] = after(known[row, _SCORE], came)
     return known
 
 

@@ -109,7 +109,7 @@ def execute(asked: pb.ExecuteRequest) -> HttpRequest:
     """
     fields: dict[str, Any] = {
         name: getattr(asked, name)
-        for name in ("width", "mass", "gripper", "strict", "seed", "animate", "motion")
+        for name in ("width", "mass", "gripper", "strict", "brisk", "seed", "animate", "motion")
         if asked.HasField(name)
     }
     fields |= {

@@ -38,7 +38,7 @@ class Grasp(Message):
     score: Annotated[float, Field(ge=0, le=1)]
     rehearsed: Annotated[tuple[Outcome, ...], Field(exclude_if=operator.not_)] = ()
     """What came of it in simulation, where it was tried: on the primitives, and on the seen
-    points completed in two ways."""
+    points, completed."""
 
 
 class Rejection(Message):

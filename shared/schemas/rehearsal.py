@@ -15,6 +15,6 @@ class Rehearsal(Message):
     """How grasps were rehearsed."""
 
     tried: int
-    """So many grasps, the best ones, each on three shapes."""
+    """So many grasps, the best ones, each on two shapes."""
     stopped: str | None = None
     """Code of the error that ended it; grasps in doubt are then answered unrehearsed."""

@@ -36,7 +36,6 @@ class Believed(int, metaclass=_enum_type_wrapper.EnumTypeWrapper):
     __slots__ = ()
     BELIEVED_UNSPECIFIED: _ClassVar[Believed]
     BELIEVED_PRIMITIVES: _ClassVar[Believed]
-    BELIEVED_TURNED: _ClassVar[Believed]
     BELIEVED_REFLECTED: _ClassVar[Believed]
 
 class Rehearsing(int, metaclass=_enum_type_wrapper.EnumTypeWrapper):
@@ -84,7 +83,6 @@ METHOD_PARTS: Method
 METHOD_EMS: Method
 BELIEVED_UNSPECIFIED: Believed
 BELIEVED_PRIMITIVES: Believed
-BELIEVED_TURNED: Believed
 BELIEVED_REFLECTED: Believed
 REHEARSING_UNSPECIFIED: Rehearsing
 REHEARSING_AUTO: Rehearsing
@@ -674,7 +672,7 @@ class Faces(_message.Message):
     def __init__(self, indices: _Optional[_Iterable[int]] = ...) -> None: ...
 
 class ExecuteRequest(_message.Message):
-    __slots__ = ("pose", "width", "primitives", "vertices", "faces", "object_pose", "mass", "plane", "up", "gripper", "actor", "strict", "seed", "animate", "motion", "highlight", "heading", "points", "viewpoint", "believed")
+    __slots__ = ("pose", "width", "primitives", "vertices", "faces", "object_pose", "mass", "plane", "up", "gripper", "actor", "strict", "seed", "animate", "motion", "highlight", "heading", "points", "viewpoint", "believed", "brisk")
     POSE_FIELD_NUMBER: _ClassVar[int]
     WIDTH_FIELD_NUMBER: _ClassVar[int]
     PRIMITIVES_FIELD_NUMBER: _ClassVar[int]
@@ -695,6 +693,7 @@ class ExecuteRequest(_message.Message):
     POINTS_FIELD_NUMBER: _ClassVar[int]
     VIEWPOINT_FIELD_NUMBER: _ClassVar[int]
     BELIEVED_FIELD_NUMBER: _ClassVar[int]
+    BRISK_FIELD_NUMBER: _ClassVar[int]
     pose: Pose
     width: float
     primitives: _containers.RepeatedCompositeFieldContainer[Superquadric]
@@ -715,7 +714,8 @@ class ExecuteRequest(_message.Message):
     points: PointCloud
     viewpoint: Vector3
     believed: Believed
-    def __init__(self, pose: _Optional[_Union[Pose, _Mapping]] = ..., width: _Optional[float] = ..., primitives: _Optional[_Iterable[_Union[Superquadric, _Mapping]]] = ..., vertices: _Optional[_Union[PointCloud, _Mapping]] = ..., faces: _Optional[_Union[Faces, _Mapping]] = ..., object_pose: _Optional[_Union[Pose, _Mapping]] = ..., mass: _Optional[float] = ..., plane: _Optional[_Union[SupportPlane, _Mapping]] = ..., up: _Optional[_Union[Vector3, _Mapping]] = ..., gripper: _Optional[str] = ..., actor: _Optional[_Union[Actor, str]] = ..., strict: _Optional[bool] = ..., seed: _Optional[int] = ..., animate: _Optional[bool] = ..., motion: _Optional[bool] = ..., highlight: _Optional[_Iterable[bool]] = ..., heading: _Optional[_Union[Vector3, _Mapping]] = ..., points: _Optional[_Union[PointCloud, _Mapping]] = ..., viewpoint: _Optional[_Union[Vector3, _Mapping]] = ..., believed: _Optional[_Union[Believed, str]] = ...) -> None: ...
+    brisk: bool
+    def __init__(self, pose: _Optional[_Union[Pose, _Mapping]] = ..., width: _Optional[float] = ..., primitives: _Optional[_Iterable[_Union[Superquadric, _Mapping]]] = ..., vertices: _Optional[_Union[PointCloud, _Mapping]] = ..., faces: _Optional[_Union[Faces, _Mapping]] = ..., object_pose: _Optional[_Union[Pose, _Mapping]] = ..., mass: _Optional[float] = ..., plane: _Optional[_Union[SupportPlane, _Mapping]] = ..., up: _Optional[_Union[Vector3, _Mapping]] = ..., gripper: _Optional[str] = ..., actor: _Optional[_Union[Actor, str]] = ..., strict: _Optional[bool] = ..., seed: _Optional[int] = ..., animate: _Optional[bool] = ..., motion: _Optional[bool] = ..., highlight: _Optional[_Iterable[bool]] = ..., heading: _Optional[_Union[Vector3, _Mapping]] = ..., points: _Optional[_Union[PointCloud, _Mapping]] = ..., viewpoint: _Optional[_Union[Vector3, _Mapping]] = ..., believed: _Optional[_Union[Believed, str]] = ..., brisk: _Optional[bool] = ...) -> None: ...
 
 class Phase(_message.Message):
     __slots__ = ("name", "simulated_s")

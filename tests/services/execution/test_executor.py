@@ -30,7 +30,7 @@ FLAT = request((0, 0, 0.05), from_above(), (np.eye(3) * 0.1, np.array([[0, 1, 2]
 
 @pytest.fixture(scope="module")
 def executor() -> Iterator[Executor]:
-    stage = Executor(ExecutionSettings())
+    stage = Executor(ExecutionSettings(workers=1))
     stage.warm_up()
     yield stage
     stage.close()
@@ -53,6 +53,36 @@ def test_concurrent_requests_get_the_answers_of_single_ones(executor: Executor) 
     assert [answer.outcome for answer in expected[:2]] == ["lifted", "missed"]
 
 
+def test_the_other_processes_can_be_started_before_they_are_needed() -> None:
+    stage = Executor(ExecutionSettings(workers=3))
+    try:
+        stage.warm_up()
+        first = stage._idle.queue[-1]
+        stage.warm_up_others()
+        started = list(stage._idle.queue)
+        assert first in started
+        assert all(each is not None and each.alive for each in started)
+        assert len({id(each) for each in started}) == 3
+        assert stage.execute(LIFTED).success
+    finally:
+        stage.close()
+
+
+def test_processes_that_do_not_start_keep_their_places(monkeypatch: pytest.MonkeyPatch) -> None:
+    def fails() -> Simulator:
+        raise StageUnavailable("no memory", stage="execution")
+
+    stage = Executor(ExecutionSettings(workers=2))
+    try:
+        monkeypatch.setattr("services.execution.executor.Simulator", fails)
+        stage.warm_up_others()
+        assert list(stage._idle.queue) == [None, None]
+        monkeypatch.undo()
+        assert stage.execute(LIFTED).success
+    finally:
+        stage.close()
+
+
 def test_errors_of_the_simulation_come_through(executor: Executor) -> None:
     with pytest.raises(DegenerateCloud, match="no volume"):
         executor.execute(FLAT)
@@ -70,7 +100,7 @@ def test_nothing_is_printed(executor: Executor, capfd: pytest.CaptureFixture[str
 
 
 def test_a_dead_process_is_replaced() -> None:
-    stage = Executor(ExecutionSettings())
+    stage = Executor(ExecutionSettings(workers=1))
     try:
         expected = stage.execute(LIFTED)
         (simulator,) = stage._idle.queue
@@ -83,7 +113,7 @@ def test_a_dead_process_is_replaced() -> None:
 
 
 def test_a_process_that_dies_at_work_is_an_error_and_then_replaced() -> None:
-    stage = Executor(ExecutionSettings(time_limit_s=20))
+    stage = Executor(ExecutionSettings(workers=1, time_limit_s=20))
     try:
         stage.warm_up()
         (simulator,) = stage._idle.queue
@@ -100,7 +130,7 @@ def test_a_process_that_dies_at_work_is_an_error_and_then_replaced() -> None:
 
 
 def test_a_process_that_hangs_is_ended_and_replaced() -> None:
-    stage = Executor(ExecutionSettings(time_limit_s=0.4))
+    stage = Executor(ExecutionSettings(workers=1, time_limit_s=0.4))
     try:
         stage.warm_up()
         (simulator,) = stage._idle.queue
@@ -116,7 +146,7 @@ def test_a_process_that_hangs_is_ended_and_replaced() -> None:
 
 
 def test_a_filmed_execution_may_take_longer() -> None:
-    stage = Executor(ExecutionSettings(time_limit_s=0.2, film_time_s=0.5))
+    stage = Executor(ExecutionSettings(workers=1, time_limit_s=0.2, film_time_s=0.5))
     try:
         stage.warm_up()
         (simulator,) = stage._idle.queue
@@ -129,7 +159,7 @@ def test_a_filmed_execution_may_take_longer() -> None:
 
 
 def test_the_deadline_of_a_request_ends_its_simulation() -> None:
-    stage = Executor(ExecutionSettings(time_limit_s=20))
+    stage = Executor(ExecutionSettings(workers=1, time_limit_s=20))
     try:
         stage.warm_up()
         (simulator,) = stage._idle.queue
@@ -143,7 +173,7 @@ def test_the_deadline_of_a_request_ends_its_simulation() -> None:
 
 
 def test_a_process_is_replaced_after_its_share() -> None:
-    stage = Executor(ExecutionSettings(executions_per_worker=1))
+    stage = Executor(ExecutionSettings(workers=1, executions_per_worker=1))
     try:
         quick = request((0, 0, 0.1), from_above(), cylinder(), width=0.09)
         pids = set()
@@ -158,7 +188,7 @@ def test_a_process_is_replaced_after_its_share() -> None:
 
 
 def test_closing_ends_the_process() -> None:
-    stage = Executor(ExecutionSettings())
+    stage = Executor(ExecutionSettings(workers=1))
     stage.warm_up()
     (simulator,) = stage._idle.queue
     assert simulator is not None

@@ -191,3 +191,31 @@ def test_where_the_robot_faces_decides_which_way_it_tilts() -> None:
     np.testing.assert_allclose(ends["y"], [0, -lean, -0.5], atol=0.03)
     np.testing.assert_allclose(ends["back"], [lean, 0, -0.5], atol=0.03)
     np.testing.assert_allclose(comes, ends["x"], atol=0.03)
+
+
+def test_a_brisk_trial_takes_less_and_tells_the_same_where_that_is_clear() -> None:
+    block = box((0.02, 0.02, 0.05), (0, 0, 0.05))
+    bar = box((0.25, 0.02, 0.015), (0, 0, 0.015))
+    for asked, came in (
+        (request((0, 0, 0.08), from_above(), block, width=0.04, strict=True), ("held",)),
+        (
+            request((0.22, 0, 0.022), from_above(), bar, width=0.04, strict=True),
+            ("slipped_in_lift", "slipped_in_shake"),
+        ),
+        (request((0.12, 0, 0.12), from_above(), block, strict=True), ("missed",)),
+    ):
+        usual, brisk = by_hand(asked), by_hand(asked, brisk=True)
+        assert usual.outcome in came
+        assert brisk.outcome in came
+        assert phases(brisk)[:3] == phases(usual)[:3]
+        assert brisk.phases[-1].simulated_s < 0.9 * usual.phases[-1].simulated_s
+    whole = by_hand(request((0, 0, 0.08), from_above(), block, width=0.04, strict=True), brisk=True)
+    lasting = np.diff([phase.simulated_s for phase in whole.phases])
+    np.testing.assert_allclose(lasting, [0.5, 0.25, 0.75, 0.5, 1.125, 0.75], atol=0.01)
+
+
+def test_an_arm_can_be_brisk_too() -> None:
+    asked = request((0, 0, 0.1), from_side(), cylinder())
+    usual, brisk = execute(asked), execute(asked.model_copy(update={"brisk": True}))
+    assert brisk.outcome == usual.outcome == "lifted"
+    assert [each.name for each in brisk.phases] == [each.name for each in usual.phases]
