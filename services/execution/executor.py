@@ -39,11 +39,8 @@ class Executor:
 
     def warm_up_others(self) -> None:
         """Start those that are not yet; each would otherwise start when it is first needed."""
-        idle: list[Simulator | None] = []
-        with contextlib.suppress(queue.Empty):
-            while True:
-                idle.append(self._idle.get_nowait())
-        for place in sorted(idle, key=lambda place: place is None):  # those at hand go back first
+        idle = sorted(self._taken(), key=lambda place: place is None)
+        for place in idle:  # those at hand go back first
             simulator = place
             with contextlib.suppress(StageUnavailable):  # who needs it will be told
                 simulator = self._ready(place)
@@ -76,8 +73,16 @@ class Executor:
     def close(self) -> None:
         """End the processes; one that is at work ends when its request does."""
         self._closed.set()
-        for _ in range(self._idle.qsize()):
-            self._give_back(self._idle.get())
+        for place in self._taken():
+            self._give_back(place)
+
+    def _taken(self) -> list[Simulator | None]:
+        """Take all places that nobody is using."""
+        taken = []
+        with contextlib.suppress(queue.Empty):
+            while True:
+                taken.append(self._idle.get_nowait())
+        return taken
 
     def _limit_s(self, request: ExecuteRequest) -> float:
         film = self._settings.film_time_s if request.animate else 0.0
