@@ -14,7 +14,7 @@ A trial's file holds what the grasp proposal is asked with, and what came of its
     moved (G,) bool           moved by a few millimetres and degrees from where the answer has it
     lifted, held (G,) bool    lifted off the table; kept when shaken and tilted, too
     outcome (G,) str          of POST /execute
-    rehearsed (G, 3) str      the same on what may be believed of it (`BELIEVED` of
+    rehearsed (G, 2) str      the same on what may be believed of it (`BELIEVED` of
                               shared.schemas.execution); empty where it came to no end or
                               was not wanted
     object_class () str, number () int, view () int, sigma_at_1m () float

@@ -23,7 +23,7 @@ from experiments.trials.trials import execution, try_out
 from shared.client import GraspResult, Sparge
 from shared.errors import DeadlineExceeded, NotFound, StageUnavailable
 from shared.geometry.se3 import matrix_from_pose, transform_points
-from shared.schemas.execution import ExecuteRequest, ExecuteResponse
+from shared.schemas.execution import BELIEVED, ExecuteRequest, ExecuteResponse
 
 GRASPS = np.column_stack(
     [
@@ -168,11 +168,12 @@ def test_each_grasp_is_rehearsed_on_what_was_recovered_where_that_is_wanted(
         rehearse=rehearse,
     )
     assert arrays is not None
-    assert len(rehearsals) == (3 if rehearse else 0) * len(arrays["grasps"])
-    assert arrays["rehearsed"].shape == (len(arrays["grasps"]), 3)
+    shapes = len(BELIEVED)
+    assert len(rehearsals) == (shapes if rehearse else 0) * len(arrays["grasps"])
+    assert arrays["rehearsed"].shape == (len(arrays["grasps"]), shapes)
     assert set(arrays["outcome"]) == {"slipped_in_lift"}
     assert set(arrays["rehearsed"].ravel()) == {"held" if rehearse and comes_to_an_end else ""}
-    rows = np.repeat(arrays["grasps"], 3, axis=0)[: len(rehearsals)]
+    rows = np.repeat(arrays["grasps"], shapes, axis=0)[: len(rehearsals)]
     for request, row in zip(rehearsals, rows, strict=True):
         assert request.pose.position == pytest.approx(row[:3])
         assert len(request.primitives) == len(arrays["superquadrics"])

@@ -51,7 +51,7 @@ class Lessons:
         They are not where they were proposed.
     score : (G,) array
         Of the answer, of where they were proposed.
-    rehearsed : (G, 3) str array
+    rehearsed : (G, 2) str array
         What came of them on what the object may look like; empty where that is not known or
         tells nothing.
     geometric : (G,) array
