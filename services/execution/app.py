@@ -20,6 +20,5 @@ def create_app(settings: ExecutionSettings | None = None) -> FastAPI:
         settings,
         handlers=[bind(EXECUTE, executor.execute)],
         warm_up=executor.warm_up,
-        afterwards=executor.warm_up_others,
         close=executor.close,
     )

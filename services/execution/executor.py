@@ -34,17 +34,8 @@ class Executor:
         self._closed = threading.Event()
 
     def warm_up(self) -> None:
-        """Start one process, so that requests are answered."""
+        """Start one process; the others start when they are first needed."""
         self._idle.put(self._ready(self._idle.get()))
-
-    def warm_up_others(self) -> None:
-        """Start those that are not yet; each would otherwise start when it is first needed."""
-        idle = sorted(self._taken(), key=lambda place: place is None)
-        for place in idle:  # those at hand go back first
-            simulator = place
-            with contextlib.suppress(StageUnavailable):  # who needs it will be told
-                simulator = self._ready(place)
-            self._give_back(simulator)
 
     def execute(self, request: ExecuteRequest) -> ExecuteResponse:
         """Replay a grasp with arm or hand and say whether it lifted the object.

@@ -97,7 +97,7 @@ async def rehearse(
     if rehearsing == "auto":
         doubtful = proposed.doubtful[rows]
         rows = rows[doubtful & doubtful[:1]]  # none, unless the best one is
-    tried: dict[int, tuple[Outcome, ...]] = {row: HELD for row in rows[:AT_MOST].tolist()}
+    tried: dict[int, tuple[Outcome, ...]] = dict.fromkeys(rows[:AT_MOST].tolist(), HELD)
     while tried:
         best = int((await select(rescored(grasps, tried), 1)).indices[0])
         if best in known.outcomes or best not in tried:

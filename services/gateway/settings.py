@@ -89,8 +89,8 @@ class GatewaySettings(ServiceSettings):
     queue_wait_s: float = Field(default=1.0, ge=0)
     deadline_s: float = Field(default=30.0, gt=0)
     execution_deadline_s: float = Field(default=60.0, gt=0)
-    rehearsal: Rehearsing = "auto"
-    rehearsal_time_s: float = Field(default=2.0, gt=0)
+    rehearsal: Rehearsing = "never"
+    rehearsal_time_s: float = Field(default=5.0, gt=0)
     samples: int = Field(default=300, ge=1, le=5000)
     preset: Preset | None = None
     rule_set: RuleSet = "default"

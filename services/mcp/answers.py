@@ -40,6 +40,10 @@ class GraspPose(BaseModel):
     retreat_position: Position = Field(description="where to lift the object to; same turn")
     width_m: float = Field(description="opening that the grasp needs, in metres")
     score: float = Field(description="estimated probability that it lifts the object")
+    rehearsed: tuple[str, ...] = Field(
+        description="what came of trying it in simulation before it was answered, once on each of "
+        "two guesses of the object's hidden side; the score takes account of it; empty: not tried"
+    )
 
 
 class Condition(BaseModel):

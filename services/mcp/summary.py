@@ -93,6 +93,7 @@ def _pose(of: full.Grasp) -> answers.GraspPose:
         retreat_position=_rounded(of.retreat.position, _TENTH_OF_A_MM),
         width_m=round(of.width, _TENTH_OF_A_MM),
         score=round(of.score, _OF_A_SHARE),
+        rehearsed=of.rehearsed,
     )
 
 

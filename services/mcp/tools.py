@@ -16,6 +16,7 @@ from services.mcp.failing import telling
 from services.mcp.files import Root
 from shared.client import GraspParameters, GraspResult
 from shared.errors import InvalidInput
+from shared.schemas.rehearsal import Rehearsing
 
 LOOKS = ToolAnnotations(read_only_hint=True, idempotent_hint=True, open_world_hint=False)
 ADDS = ToolAnnotations(
@@ -59,6 +60,13 @@ Matrix = Annotated[
 ]
 Scale = Annotated[float | None, Field(gt=0, description="metres per unit of a depth image")]
 Count = Annotated[int, Field(ge=0, le=20, description="0: only the part to hold and the reasons")]
+Rehearsal = Annotated[
+    Rehearsing | None,
+    Field(
+        description="try grasps in simulation before they are answered, in a few tenths of a "
+        "second: auto, those in doubt; always; never; the backend's own way if absent"
+    ),
+]
 Names = Annotated[Sequence[str], Field(max_length=32)]
 
 
@@ -83,6 +91,7 @@ def add_tools(server: MCPServer, backend: Backend, root: Root, *, read_only: boo
         depth_scale: Scale = None,
         frame_id: Annotated[str, Field(description="name of the view's frame")] = "camera",
         seed: Annotated[int, Field(ge=0, lt=2**32)] = 0,
+        rehearsal: Rehearsal = None,
     ) -> answers.GraspAnswer:
         """Find the part of an object to hold for a task, and gripper poses on that part.
 
@@ -107,6 +116,8 @@ def add_tools(server: MCPServer, backend: Backend, root: Root, *, read_only: boo
             given["intrinsics"] = intrinsics
         if depth_scale is not None:
             given["depth_scale"] = depth_scale
+        if rehearsal is not None:
+            given["rehearsal"] = rehearsal
         return summary.grasp(_asked(backend, root, task, file, points, given).answer)
 
     @server.tool(title="Why that part, or why none", annotations=LOOKS)

@@ -38,6 +38,9 @@ class Controls:
             self._rejected = gui.add_checkbox(
                 "Rejected hands", initial_value=False, hint="Click one to see why it was left out"
             )
+            self._rehearsed = gui.add_checkbox(
+                "Try them first", initial_value=False, hint="Those in doubt, before they are shown"
+            )
             self._legend = gui.add_html("")
             self._try = gui.add_button("Try it in simulation", icon=viser.Icon.PLAYER_PLAY)
         with tabs.add_tab("Look"):
@@ -74,6 +77,7 @@ class Controls:
             self._noise,
             self._hidden,
             self._rejected,
+            self._rehearsed,
         )
         for control in asking:
             control.on_update(lambda _: ask())
@@ -118,6 +122,10 @@ class Controls:
     @property
     def shows_rejected(self) -> bool:
         return self._rejected.value
+
+    @property
+    def rehearses(self) -> bool:
+        return self._rehearsed.value
 
     @property
     def shows_all_grasps(self) -> bool:

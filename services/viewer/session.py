@@ -45,6 +45,7 @@ class Asked:
     gripper: str
     disturbance: Disturbance
     with_rejected: bool
+    rehearsed: bool
 
 
 @dataclass(frozen=True)
@@ -116,6 +117,7 @@ class Session:
             said.gripper,
             Disturbance(said.noise_mm, said.hidden),
             said.shows_rejected,
+            said.rehearses,
         )
 
     def _answer(self, asked: Asked, is_newest: StillNewest) -> None:
@@ -162,6 +164,7 @@ class Session:
             gripper=asked.gripper,
             viewpoint=seen.viewpoint,
             rejected=REJECTED if asked.with_rejected else 0,
+            rehearsal="auto" if asked.rehearsed else None,
         )
 
     def _show(self, *, moves_eye: bool) -> None:

@@ -31,6 +31,7 @@ def answer_in_words(answer: GraspAnswer) -> str:
     if left_out:
         listed = ", ".join(f"{count} {code}" for code, count in left_out.items())
         lines += ["", f"*{answer.scene.candidates} hands were tried; left out: {_plain(listed)}*"]
+    lines += _rehearsed(answer)
     lines += ["", f"*{answer.timings_ms.get('total', 0.0):.0f} ms, seed {answer.seed}*"]
     return "\n".join(lines)
 
@@ -50,6 +51,22 @@ def execution_in_words(outcome: ExecuteResponse) -> str:
 def rejected_in_words(hand: RejectedGrasp) -> str:
     """Return why a hand was left out."""
     return f"left out, **{_plain(hand.reason.code)}**: {_plain(hand.reason.message)}"
+
+
+def _rehearsed(answer: GraspAnswer) -> list[str]:
+    """Return what came of trying grasps in simulation before they were answered, if any were."""
+    came = [
+        f"grasp {number}: {', '.join(map(_outcome, grasp.rehearsed))}"
+        for number, grasp in enumerate(answer.grasps, start=1)
+        if grasp.rehearsed
+    ]
+    if answer.rehearsal is not None and answer.rehearsal.stopped:
+        came.append(f"ended by {_plain(answer.rehearsal.stopped)}")
+    return ["", f"*Tried in simulation before the answer: {'; '.join(came)}*"] if came else []
+
+
+def _outcome(outcome: str) -> str:
+    return outcome.replace("_", " ")
 
 
 def _rule(trace: RuleTrace, kind: str) -> list[str]:

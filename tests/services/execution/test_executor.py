@@ -53,34 +53,17 @@ def test_concurrent_requests_get_the_answers_of_single_ones(executor: Executor) 
     assert [answer.outcome for answer in expected[:2]] == ["lifted", "missed"]
 
 
-def test_the_other_processes_can_be_started_before_they_are_needed() -> None:
-    stage = Executor(ExecutionSettings(workers=3))
-    try:
-        stage.warm_up()
-        first = stage._idle.queue[-1]
-        stage.warm_up_others()
-        started = list(stage._idle.queue)
-        assert first in started
-        assert all(each is not None and each.alive for each in started)
-        assert len({id(each) for each in started}) == 3
-        assert stage.execute(LIFTED).success
-    finally:
-        stage.close()
-
-
-def test_processes_that_do_not_start_keep_their_places(monkeypatch: pytest.MonkeyPatch) -> None:
-    def fails() -> Simulator:
-        raise StageUnavailable("no memory", stage="execution")
-
+def test_every_process_ends_with_the_stage() -> None:
     stage = Executor(ExecutionSettings(workers=2))
-    try:
-        monkeypatch.setattr("services.execution.executor.Simulator", fails)
-        stage.warm_up_others()
-        assert list(stage._idle.queue) == [None, None]
-        monkeypatch.undo()
-        assert stage.execute(LIFTED).success
-    finally:
-        stage.close()
+    threads = [threading.Thread(target=stage.execute, args=(LIFTED,)) for _ in range(2)]
+    for thread in threads:
+        thread.start()
+    for thread in threads:
+        thread.join()
+    started = [each for each in stage._idle.queue if each is not None]
+    assert len(started) == 2
+    stage.close()
+    assert not any(each.alive for each in started)
 
 
 def test_errors_of_the_simulation_come_through(executor: Executor) -> None:

@@ -260,9 +260,9 @@ def test_an_unknown_way_to_rehearse_is_told(backend: Client) -> None:
 
 
 def test_a_backends_own_way_is_one_of_three(monkeypatch: pytest.MonkeyPatch) -> None:
-    assert GatewaySettings().rehearsal == "auto"
-    monkeypatch.setenv("SPARGE_GATEWAY_REHEARSAL", "never")
     assert GatewaySettings().rehearsal == "never"
+    monkeypatch.setenv("SPARGE_GATEWAY_REHEARSAL", "auto")
+    assert GatewaySettings().rehearsal == "auto"
     monkeypatch.setenv("SPARGE_GATEWAY_REHEARSAL", "sometimes")
     with pytest.raises(ValueError, match="rehearsal"):
         GatewaySettings()

@@ -113,6 +113,17 @@ def test_without_teaching(tell: Callable[..., None]) -> None:
     tell(story, read_only=True)
 
 
+def test_grasps_are_tried_in_simulation_where_that_is_wanted(tell: Callable[..., None]) -> None:
+    async def story(agent: Agent) -> None:
+        asked = {"task": "cooking", "file": "sample:saucepan"}
+        tried = await use(agent, "grasp", **asked, rehearsal="always")
+        assert len(tried["grasps"][0]["rehearsed"]) == 2
+        never = await use(agent, "grasp", **asked, rehearsal="never")
+        assert not any(each["rehearsed"] for each in never["grasps"])
+
+    tell(story)
+
+
 def test_a_file_is_grasped_and_explained(tell: Callable[..., None], backend: Client) -> None:
     async def story(agent: Agent) -> None:
         found = await use(agent, "grasp", task="pouring", file="kitchen/bottle.npz")
@@ -130,6 +141,7 @@ def test_a_file_is_grasped_and_explained(tell: Callable[..., None], backend: Cli
         assert len(found["grasps"]) == len(full["grasps"]) == 3
         for short, long in zip(found["grasps"], full["grasps"], strict=True):
             assert short["position"] == pytest.approx(long["pose"]["position"], abs=6e-5)
+            assert short["rehearsed"] == []
             turn = matrix_from_quaternion(np.array(short["quaternion_xyzw"]))
             np.testing.assert_allclose(turn[:, 2], short["approach"], atol=5e-5)
             before = np.array(short["position"]) - 0.1 * np.array(short["approach"])

@@ -23,7 +23,7 @@ VIEWPORT = {"width": 420, "height": 420}
 @pytest.fixture(scope="module")
 def url(backend: Client, tmp_path_factory: pytest.TempPathFactory) -> Iterator[str]:
     folder = tmp_path_factory.mktemp("views")
-    for name in ("bottle", "spatula"):
+    for name in ("bottle", "saucepan", "spatula"):
         (folder / f"{name}.npz").write_bytes(sample_path(name).read_bytes())
     (folder / "broken.ply").write_bytes(b"ply\nformat ascii 1.0\nelement vertex 9\n")
     (folder / "notes.txt").write_text("no view")
@@ -111,6 +111,16 @@ def test_rejected_hands_are_asked_for_and_a_grasp_is_tried(page: Page) -> None:
     page.get_by_text(re.compile(r"grasps, [1-9]\d* hands left out")).first.wait_for()
     page.get_by_role("button", name="Try it in simulation").click()
     page.get_by_text(re.compile("held|slipped|missed|pushed")).first.wait_for()
+
+
+def test_grasps_in_doubt_are_tried_before_they_are_shown(page: Page) -> None:
+    choose(page, "View", "saucepan.npz")
+    choose(page, "Task", "cooking")
+    page.get_by_text(re.compile(r"cooking \(v2\): hold part")).first.wait_for()
+    page.get_by_role("tab", name="Grasps").click()
+    page.get_by_label("Try them first", exact=True).check()
+    page.get_by_role("tab", name="Why").click()
+    page.get_by_text(re.compile(r"Tried in simulation before the answer: grasp \d: ")).wait_for()
 
 
 def test_two_pages_do_not_disturb_each_other(browser: Browser, page: Page, url: str) -> None:

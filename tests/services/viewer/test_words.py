@@ -7,6 +7,7 @@ import pytest
 from services.viewer.words import answer_in_words, error_in_words, margin
 from shared.client import Sparge
 from shared.errors import UnknownTask
+from shared.schemas.rehearsal import Rehearsal
 from shared.schemas.task import Condition
 from tests.support.samples import sample_view
 from tests.support.serving import Client
@@ -47,6 +48,19 @@ def test_what_does_not_fit_tells_what_came_closest(backend: Client) -> None:
     words = answer_in_words(answer)
     assert "**Nearest miss**" in words
     assert "| ✗ |" in words
+
+
+def test_what_was_tried_in_simulation_is_told(backend: Client) -> None:
+    sparge = Sparge(backend.request)
+    answer = sparge.grasp(sample_view("saucepan"), "cooking", rehearsal="always").answer
+    came = ", ".join(each.replace("_", " ") for each in answer.grasps[0].rehearsed)
+    assert f"*Tried in simulation before the answer: grasp 1: {came}" in answer_in_words(answer)
+    stopped = Rehearsal(tried=0, stopped="stage_unavailable")
+    none = tuple(each.model_copy(update={"rehearsed": ()}) for each in answer.grasps)
+    words = answer_in_words(answer.model_copy(update={"grasps": none, "rehearsal": stopped}))
+    assert r"before the answer: ended by stage\_unavailable*" in words
+    never = sparge.grasp(sample_view("saucepan"), "cooking", rehearsal="never").answer
+    assert "simulation" not in answer_in_words(never)
 
 
 def test_an_error_is_told_with_its_code() -> None:
