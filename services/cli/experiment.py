@@ -6,6 +6,7 @@ import contextlib
 import os
 import tempfile
 from collections.abc import Iterator
+from dataclasses import replace
 from pathlib import Path
 from typing import Annotated
 
@@ -40,6 +41,10 @@ def experiment(
     catalogue: Annotated[
         bool, typer.Option(help="Ask about views of the catalogue's objects")
     ] = True,
+    variants: Annotated[
+        int | None,
+        typer.Option(min=0, help="Also ask about so many random objects of every class"),
+    ] = None,
     limit: Annotated[
         int | None, typer.Option(min=1, help="At most so many views of each object")
     ] = None,
@@ -61,6 +66,10 @@ def experiment(
 
     progress, output = Console(stderr=True), Console()
     wanted = find(name, human_labels=human_labels, trials=trials)
+    if variants is not None:
+        if variants and (not catalogue or wanted.views_per_object is None):
+            raise InvalidInput(f"{name} looks at no views of random objects here: leave out --variants")
+        wanted = replace(wanted, variants=variants)
     folders = scans or []
     if wanted.views_per_object is not None and not (catalogue or folders):
         raise InvalidInput("there is nothing to ask about: name --scans, or leave the catalogue")

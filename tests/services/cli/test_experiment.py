@@ -5,10 +5,12 @@ from __future__ import annotations
 import os
 from functools import partial
 from pathlib import Path
+from typing import Any
 
 import pytest
 
 from experiments.dataset import DatasetOptions, make_dataset
+from experiments.framework.experiment import Experiment
 from experiments.registry import experiment as experiment_named
 from experiments.tuning.experiment import TRIALS
 from services.cli.experiment import experiment, own_backend
@@ -49,6 +51,26 @@ def test_nothing_to_ask_about_is_said_before_a_backend_starts(tmp_path: Path) ->
         experiment("regions", human_labels=tmp_path, results=tmp_path)
     with pytest.raises(InvalidInput, match="only tuning takes trials, not shapes"):
         experiment("shapes", trials=3, results=tmp_path)
+    with pytest.raises(InvalidInput, match="no views of random objects"):
+        experiment("grasps", variants=2, catalogue=False, scans=[tmp_path], results=tmp_path)
+    with pytest.raises(InvalidInput, match="no views of random objects"):
+        experiment("shapes", variants=2, results=tmp_path)
+
+
+def test_random_objects_are_looked_at_as_well(
+    tmp_path: Path, monkeypatch: pytest.MonkeyPatch
+) -> None:
+    asked: list[int] = []
+
+    def views(wanted: Experiment, *_: Any, **__: Any) -> None:
+        asked.append(wanted.variants)
+        raise InvalidInput("seen")
+
+    monkeypatch.setattr("experiments.framework.conduct.view_sets", views)
+    for name, variants in (("grasps", None), ("grasps", 3), ("primitives", None)):
+        with pytest.raises(InvalidInput, match="seen"):
+            experiment(name, variants=variants, results=tmp_path)
+    assert asked == [0, 3, 4]
 
 
 def test_so_many_trials_are_searched() -> None:
