@@ -68,9 +68,7 @@ def experiment(
     wanted = find(name, human_labels=human_labels, trials=trials)
     if variants is not None:
         if variants and (not catalogue or wanted.views_per_object is None):
-            raise InvalidInput(
-                f"{name} looks at no views of random objects here: leave out --variants"
-            )
+            raise InvalidInput(f"{name} looks at no random objects here: leave out --variants")
         wanted = replace(wanted, variants=variants)
     folders = scans or []
     if wanted.views_per_object is not None and not (catalogue or folders):

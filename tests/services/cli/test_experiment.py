@@ -51,9 +51,9 @@ def test_nothing_to_ask_about_is_said_before_a_backend_starts(tmp_path: Path) ->
         experiment("regions", human_labels=tmp_path, results=tmp_path)
     with pytest.raises(InvalidInput, match="only tuning takes trials, not shapes"):
         experiment("shapes", trials=3, results=tmp_path)
-    with pytest.raises(InvalidInput, match="no views of random objects"):
+    with pytest.raises(InvalidInput, match="no random objects"):
         experiment("grasps", variants=2, catalogue=False, scans=[tmp_path], results=tmp_path)
-    with pytest.raises(InvalidInput, match="no views of random objects"):
+    with pytest.raises(InvalidInput, match="no random objects"):
         experiment("shapes", variants=2, results=tmp_path)
 
 
