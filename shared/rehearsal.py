@@ -46,12 +46,13 @@ def rehearsals(
     """
     x, y, z, qx, qy, qz, qw, width, _ = map(float, grasp)
     heading_x, heading_y, heading_z = (points.mean(axis=0) - viewpoint).tolist()
+    bodies = tuple(tuple(map(float, each)) for each in superquadrics)
     somewhere = np.linalg.norm([heading_x, heading_y, heading_z]) > NOWHERE
     return [
         ExecuteRequest(
             pose=Pose(position=(x, y, z), quaternion=(qx, qy, qz, qw)),
             width=width,
-            primitives=tuple(tuple(map(float, each)) for each in superquadrics),
+            primitives=bodies,
             points=None if believed == "primitives" else points,
             viewpoint=viewpoint,
             believed=believed,

@@ -79,7 +79,7 @@ def try_out(
         Grasps that are tried for each question.
     seed : int
     rehearse : bool
-        Try each grasp on what was recovered, too, which takes three times as long again.
+        Try each grasp on what was recovered, too, which takes about as long again.
 
     Raises
     ------

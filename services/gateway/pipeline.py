@@ -312,8 +312,6 @@ class Pipeline:
         """Return the grasps that hold the region, those in doubt rehearsed."""
         parameters = request.parameters
         rehearsing = parameters.rehearsal or self._settings.rehearsal
-        if not parameters.max_grasps:
-            rehearsing = "never"
         some_s = min(self._settings.rehearsal_time_s, remaining_s() / 2)
         until = time.monotonic() + (remaining_s() if rehearsing == "always" else some_s)
 

@@ -90,16 +90,18 @@ async def rehearse(
         From `select`; from `attempt` only where rehearsing is `always`.
     """
     grasps = proposed.grasps
-    if rehearsing == "never":
-        return Rehearsed(await select(grasps, 0))
-    known = Rehearsed(await select(grasps, AT_MOST))
-    rows = known.selected.indices
+    known = Rehearsed(await select(grasps, 0))
+    answered = known.selected.indices
+    if rehearsing == "never" or not len(answered):
+        return known
+    if rehearsing == "auto" and not proposed.doubtful[answered[0]]:
+        return known
+    rows = (await select(grasps, AT_MOST)).indices
     if rehearsing == "auto":
-        doubtful = proposed.doubtful[rows]
-        rows = rows[doubtful & doubtful[:1]]  # none, unless the best one is
+        rows = rows[proposed.doubtful[rows]]
     tried: dict[int, tuple[Outcome, ...]] = dict.fromkeys(rows[:AT_MOST].tolist(), HELD)
-    while tried:
-        best = int((await select(rescored(grasps, tried), 1)).indices[0])
+    while True:
+        best = int((await select(rescored(grasps, tried), 0)).indices[0])
         if best in known.outcomes or best not in tried:
             break
         try:

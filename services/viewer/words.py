@@ -56,17 +56,13 @@ def rejected_in_words(hand: RejectedGrasp) -> str:
 def _rehearsed(answer: GraspAnswer) -> list[str]:
     """Return what came of trying grasps in simulation before they were answered, if any were."""
     came = [
-        f"grasp {number}: {', '.join(map(_outcome, grasp.rehearsed))}"
+        f"grasp {number}: {', '.join(grasp.rehearsed).replace('_', ' ')}"
         for number, grasp in enumerate(answer.grasps, start=1)
         if grasp.rehearsed
     ]
     if answer.rehearsal is not None and answer.rehearsal.stopped:
         came.append(f"ended by {_plain(answer.rehearsal.stopped)}")
     return ["", f"*Tried in simulation before the answer: {'; '.join(came)}*"] if came else []
-
-
-def _outcome(outcome: str) -> str:
-    return outcome.replace("_", " ")
 
 
 def _rule(trace: RuleTrace, kind: str) -> list[str]:

@@ -30,7 +30,7 @@ FLAT = request((0, 0, 0.05), from_above(), (np.eye(3) * 0.1, np.array([[0, 1, 2]
 
 @pytest.fixture(scope="module")
 def executor() -> Iterator[Executor]:
-    stage = Executor(ExecutionSettings(workers=1))
+    stage = Executor(ExecutionSettings())
     stage.warm_up()
     yield stage
     stage.close()
