@@ -6,6 +6,7 @@ from typing import Any
 
 import numpy as np
 from numpy.typing import NDArray
+from scipy.spatial import cKDTree
 
 from services.grasp_proposal.boxes import comes_near, support_clearance
 from services.grasp_proposal.candidates import candidates
@@ -137,7 +138,7 @@ class GraspProposer:
         contacts = contacts.take(kept)
         rows = _rows(workspace, centres[kept], rotations[kept], contacts.width, scores[order][kept])
         shares = [contacts.in_focus, contacts.left_in_focus, contacts.right_in_focus]
-        rest = workspace.points[~workspace.in_focus]
+        rest = _beyond(workspace, hand.finger_width)
         near = comes_near(contacts.placed, hand, contacts.opening, rest, _AWAY)
         unsure = doubtful(workspace, hand, contacts, rows[:, -1], sight)
         return rows, np.column_stack(shares), ~near, unsure
@@ -156,6 +157,19 @@ def _rows(
             scores,
         ]
     )
+
+
+def _beyond(workspace: Workspace, margin: float) -> Array:
+    """Return the object's points (N, 3) that are farther from the focus than a margin.
+
+    What is nearer is beside the part that is to be held, and so beside every hand that does.
+    """
+    rest = workspace.points[~workspace.in_focus]
+    if not len(rest):
+        return rest
+    tree = cKDTree(workspace.points[workspace.in_focus], leafsize=64, balanced_tree=False)
+    distance, _ = tree.query(rest, distance_upper_bound=margin)
+    return np.asarray(rest[np.isinf(distance)])
 
 
 def _examples(workspace: Workspace, rejected: Rejections) -> dict[str, Any]:

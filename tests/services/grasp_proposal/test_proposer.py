@@ -166,7 +166,8 @@ def test_says_which_hands_keep_away_from_the_rest() -> None:
     focus = along > -0.02
     answer = propose(CYLINDER, focus=focus)
     assert 0 < answer.keeps_clear.sum() < len(answer.grasps)
-    hand, rest = PARALLEL["panda"], CYLINDER.points[~focus]
+    hand = PARALLEL["panda"]
+    rest = CYLINDER.points[along < -0.02 - hand.finger_width - 0.002]
     for row, clear in zip(answer.grasps, answer.keeps_clear, strict=True):
         local = transform_points(inverse(matrix_from_pose(row[:3], row[3:7])), rest)
         x, y, z = np.abs(local[:, 0]), np.abs(local[:, 1]), local[:, 2]
