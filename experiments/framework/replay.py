@@ -15,6 +15,8 @@ from shared.schemas.grasp import Pose
 from shared.wire import NPZ, encode
 
 GRIPPER = "panda"
+AHEAD = (0.0, 0.0, 1.0)
+"""Of the camera's frame: the robot faces what its camera looks at."""
 
 
 class Replays:
@@ -46,6 +48,8 @@ def free_hand(
 ) -> ExecuteRequest:
     """Return the request that a hand alone lifts, shakes and tilts the true object.
 
+    It shakes to the left and right of the camera, and tilts away from it.
+
     Parameters
     ----------
     view : ShownView
@@ -73,4 +77,5 @@ def free_hand(
         gripper=gripper,
         actor="hand",
         strict=True,
+        heading=AHEAD,
     )

@@ -2,8 +2,6 @@
 
 from __future__ import annotations
 
-from typing import Any
-
 import numpy as np
 from numpy.typing import NDArray
 
@@ -63,8 +61,6 @@ NAMES = (
 
 LENGTHS = 10.0
 """What lengths are multiplied by: decimetres."""
-TORQUES_OF = ("weight", "lever_length", "longest")
-"""The weight and the levers of `torques`."""
 _HIGH = 0.1
 """Heights above the support count up to here, metres."""
 _ODD_X = ("lever_x", "torque_y", "torque_z", "up_x", "sight_x", "box_x")
@@ -72,16 +68,6 @@ _ODD_Y = ("lever_y", "torque_x", "torque_z", "up_y", "sight_y", "box_y")
 MIRROR_X = np.array([-1.0 if name in _ODD_X else 1.0 for name in NAMES])
 """What each number is multiplied by when the scene is mirrored along the hand's x."""
 MIRROR_Y = np.array([-1.0 if name in _ODD_Y else 1.0 for name in NAMES])
-
-
-def torques(numbers: NDArray[Any]) -> Array:
-    """Return two torques of the guessed weight (G, 2), Nm, of the numbers (G, M) of `measure`.
-
-    About the tool centre, however the hand is tilted; and with the object's length as its
-    lever, which is the same for all grasps of an object.
-    """
-    weight, *levers = (numbers[:, NAMES.index(name)].astype(np.float64) for name in TORQUES_OF)
-    return np.column_stack([weight * lever / LENGTHS for lever in levers])
 
 
 def measure(

@@ -9,35 +9,18 @@ import argparse
 import hashlib
 import logging
 import time
-from collections.abc import Sequence
 from pathlib import Path
-
-import numpy as np
-from numpy.typing import NDArray
 
 from services.grasp_proposal.learned import MODEL
 from services.grasp_proposal.training.card import card
-from services.grasp_proposal.training.evaluation import combined, ensemble, held_out, report
+from services.grasp_proposal.training.evaluation import calibrated, ensemble, held_out, report
 from services.grasp_proposal.training.export import to_onnx
-from services.grasp_proposal.training.lessons import Lessons, joined, objects_of, read_lessons
-from services.grasp_proposal.training.network import Network
-from services.grasp_proposal.training.order import fit_order
-
-Array = NDArray[np.float64]
+from services.grasp_proposal.training.lessons import read_lessons
 
 logger = logging.getLogger(__name__)
 
 
-def train(
-    trials: Path,
-    out: Path,
-    *,
-    folds: int,
-    epochs: int,
-    networks: int,
-    seed: int,
-    further: Path | None = None,
-) -> None:
+def train(trials: Path, out: Path, *, folds: int, epochs: int, networks: int, seed: int) -> None:
     """Write the model and its card.
 
     Parameters
@@ -50,9 +33,6 @@ def train(
         Parts that the objects are cut into for the figures and the calibration.
     epochs, networks, seed : int
         Passes over the grasps; how many networks the shipped answer is the mean of.
-    further : Path, optional
-        Folder of trials that the order alone is fitted to, beside the held-out ones: of its
-        objects those that no network learns from.
     """
     started = time.perf_counter()
     lessons = read_lessons(trials)
@@ -61,30 +41,17 @@ def train(
     figures = report(lessons, found)
     logger.info("judged on held-out objects, %.0f s", time.perf_counter() - started)
     shipped = ensemble(lessons, epochs, networks, seed)
-    ordered, logits = _to_order(lessons, found.logits, shipped, further)
-    order = fit_order(ordered, logits)
-    content = to_onnx(shipped, order).SerializeToString(deterministic=True)
+    platt = calibrated(lessons, found.logits)
+    content = to_onnx(shipped, platt).SerializeToString(deterministic=True)
     out.parent.mkdir(parents=True, exist_ok=True)
     out.write_bytes(content)
     command = (
         f"python -m services.grasp_proposal.train TRIALS --folds {folds} --epochs {epochs} "
-        f"--networks {networks} --seed {seed}{' --further FURTHER' if further else ''}"
+        f"--networks {networks} --seed {seed}"
     )
-    text = card(lessons, ordered, figures, order, command, hashlib.sha256(content).hexdigest())
+    text = card(lessons, figures, command, hashlib.sha256(content).hexdigest())
     out.with_suffix(".md").write_text(text, encoding="utf-8")
     logger.info("done, %.0f s\n\n%s", time.perf_counter() - started, text)
-
-
-def _to_order(
-    lessons: Lessons, logits: Array, networks: Sequence[Network], further: Path | None
-) -> tuple[Lessons, Array]:
-    """Return all lessons that the order is fitted to, and their held-out logits (G,)."""
-    if further is None:
-        return lessons, logits
-    others = read_lessons(further)
-    others = others.take(~np.isin(objects_of(others), objects_of(lessons)))
-    logger.info("%d grasps of other objects to fit the order to", len(others))
-    return joined([lessons, others]), np.concatenate([logits, combined(networks, others)])
 
 
 def main(arguments: list[str] | None = None) -> None:
@@ -96,9 +63,6 @@ def main(arguments: list[str] | None = None) -> None:
     parser.add_argument("--epochs", type=int, default=15)
     parser.add_argument("--networks", type=int, default=4)
     parser.add_argument("--seed", type=int, default=0)
-    parser.add_argument(
-        "--further", type=Path, help="trials of other objects, to fit the order to alone"
-    )
     given = parser.parse_args(arguments)
     logging.basicConfig(level=logging.INFO, format="%(message)s")
     train(
@@ -108,7 +72,6 @@ def main(arguments: list[str] | None = None) -> None:
         epochs=given.epochs,
         networks=given.networks,
         seed=given.seed,
-        further=given.further,
     )
 
 

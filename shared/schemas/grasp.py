@@ -63,8 +63,9 @@ class ProposeResponse(Message):
     on_focus: HeldShares
     """How much of what each grasp holds is in the request's focus."""
     keeps_clear: Mask
-    """For each grasp: on its way in the hand stays 10 mm away from all of the object that is farther
-    from the focus than a finger is wide, so that it leaves the parts free that the task needs."""
+    """For each grasp: on its way in the hand stays 10 mm away from all of the object that is
+    farther from the focus than a finger is wide, so that it leaves the parts free that the task
+    needs."""
     doubtful: Mask
     """For each grasp: whether it holds is in doubt, because its score is low or the weight turns
     the object between the pads, and a simulation would tell, because the superquadrics are not

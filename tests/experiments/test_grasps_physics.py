@@ -102,6 +102,9 @@ def test_a_grasp_is_replayed_where_the_object_was_seen(make_context: MakeContext
     assert np.median(distance) < 0.01
     assert request.strict
     assert request.actor == "hand"
+    assert request.heading is not None
+    towards = view.object_points.mean(axis=0)
+    assert towards @ np.array(request.heading) > 0.9 * np.linalg.norm(towards)
 
 
 def test_physics_of_one_view(make_context: MakeContext, sparge: Sparge) -> None:

@@ -8,7 +8,7 @@ from typing import Any
 import numpy as np
 
 from services.grasp_proposal.training.lessons import Lessons, objects_of
-from services.grasp_proposal.training.order import Order
+from services.grasp_proposal.training.network import HEADS
 
 _NAMES = {
     "network": "network (shipped kind)",
@@ -17,28 +17,17 @@ _NAMES = {
 }
 
 
-def card(
-    lessons: Lessons,
-    ordered: Lessons,
-    figures: Mapping[str, Any],
-    order: Order,
-    command: str,
-    sha256: str,
-) -> str:
+def card(lessons: Lessons, figures: Mapping[str, Any], command: str, sha256: str) -> str:
     """Return the card as Markdown."""
     objects = len(np.unique(objects_of(lessons)))
     lifted, held = 100 * lessons.lifted.mean(), 100 * lessons.held.mean()
     chance, oracle = figures["chance"], figures["oracle"]
-    judged = int((~ordered.moved).sum())
-    unseen = len(np.unique(objects_of(ordered)))
     return f"""# grasp_scorer.onnx
 
 Scores grasps of a parallel gripper. In: `images` (G, 15, 20, 20), what is about the closing
 region, and `numbers` (G, M), as `services/grasp_proposal/learned.py` makes them. Out: `logit`
-(G,), the log odds that a grasp lifts the object, Platt-scaled from the mean log odds of two
-heads (lifts; keeps the object when shaken and tilted, too) less {order.per_nm:.2f} for each Nm of
-torque that the weight may have about the hand beyond a lever of {order.usual:.2f} of the object's
-length.
+(G,), the log odds that a grasp lifts the object, Platt-scaled from the log odds of two heads:
+{HEADS[0]} of that it lifts, {HEADS[1]} of that it keeps the object when shaken and tilted, too.
 
 Made by `{command}`, sha256
 `{sha256}`.
@@ -47,8 +36,7 @@ Trained on {len(lessons)} grasps tried in physics on {objects} objects, random v
 catalogue's classes alone on a table, with and without stereo noise
 (`python -m experiments.trials`). {lifted:.0f} % of the grasps lift, {held:.0f} % keep the object
 when shaken. {int(lessons.moved.sum())} of them were moved by some millimetres and degrees; these
-only teach. The fall with the torque and the Platt map are fitted to {judged} grasps of
-{unseen} objects, by networks that never saw them.
+only teach.
 
 Figures over {figures["grasps"]} grasps as they were proposed, of {figures["views"]} questions,
 each scored by networks that were trained without its object (cross-validation by objects; the

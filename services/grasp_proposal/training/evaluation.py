@@ -10,6 +10,7 @@ import numpy as np
 from numpy.typing import NDArray
 from sklearn.ensemble import HistGradientBoostingClassifier
 
+from services.grasp_proposal.training.calibration import Platt, fit_platt
 from services.grasp_proposal.training.figures import (
     any_per_view,
     average_precision,
@@ -18,8 +19,7 @@ from services.grasp_proposal.training.figures import (
     roc_auc,
 )
 from services.grasp_proposal.training.lessons import Lessons, objects_of
-from services.grasp_proposal.training.network import Network, train_network
-from services.grasp_proposal.training.order import fit_order
+from services.grasp_proposal.training.network import HEADS, Network, train_network
 
 Array = NDArray[np.float64]
 Fold = NDArray[np.intp]
@@ -32,9 +32,9 @@ class HeldOut:
     Attributes
     ----------
     logits : (G,) array
-        Mean of the networks' heads.
+        Of the networks, by `combined`.
     probabilities : (G,) array
-        Ordered and calibrated on the other folds.
+        Calibrated on the other folds.
     boosted : (G,) array
         Of gradient boosting on the numbers alone.
     """
@@ -63,8 +63,7 @@ def held_out(lessons: Lessons, folds: int, epochs: int, networks: int, seed: int
     probabilities = np.zeros(len(lessons))
     for index in range(folds):
         mine = fold == index
-        found = fit_order(lessons.take(~mine), logits[~mine])
-        probabilities[mine] = found(logits[mine], lessons.numbers[mine])
+        probabilities[mine] = calibrated(lessons.take(~mine), logits[~mine])(logits[mine])
     return HeldOut(logits, probabilities, boosted)
 
 
@@ -74,8 +73,16 @@ def ensemble(lessons: Lessons, epochs: int, networks: int, seed: int) -> list[Ne
 
 
 def combined(networks: Sequence[Network], lessons: Lessons) -> Array:
-    """Return the mean log odds (G,) of lifting and of keeping, over the networks."""
-    return np.asarray(np.mean([each.logits(lessons).mean(axis=1) for each in networks], axis=0))
+    """Return the networks' mean log odds (G,) of lifting and keeping, weighted by `HEADS`."""
+    return np.asarray(np.mean([each.logits(lessons) @ HEADS for each in networks], axis=0))
+
+
+def calibrated(lessons: Lessons, logits: Array) -> Platt:
+    """Return what turns held-out logits (G,) into how often grasps lift.
+
+    Only grasps that are where they were proposed count.
+    """
+    return fit_platt(logits[~lessons.moved], lessons.lifted[~lessons.moved])
 
 
 def report(lessons: Lessons, found: HeldOut) -> dict[str, Any]:

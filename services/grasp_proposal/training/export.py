@@ -11,32 +11,22 @@ from onnx import ModelProto, NodeProto, TensorProto, checker, helper, numpy_help
 
 from services.grasp_proposal.descriptor import CHANNELS, SIZE
 from services.grasp_proposal.learned import IMAGES, LOGIT, NUMBERS
-from services.grasp_proposal.measures import LENGTHS, NAMES, TORQUES_OF
-from services.grasp_proposal.training.network import FAR, Network
-from services.grasp_proposal.training.order import Order
+from services.grasp_proposal.measures import NAMES
+from services.grasp_proposal.training.calibration import Platt
+from services.grasp_proposal.training.network import FAR, HEADS, Network
 
 OPSET, IR_VERSION = 17, 9
 
 
-def to_onnx(networks: Sequence[Network], order: Order) -> ModelProto:
-    """Return the model: `images` and `numbers` to the ordered, calibrated mean `logit`."""
+def to_onnx(networks: Sequence[Network], platt: Platt) -> ModelProto:
+    """Return the model: `images` and `numbers` to the calibrated `logit` of all heads."""
     graph = _Graph()
     heads = [graph.add_network(f"n{index}_", each) for index, each in enumerate(networks)]
     summed = heads[0] if len(heads) == 1 else graph.node("Sum", heads, "heads")
-    share = order.platt.slope / (2 * len(networks))
-    graph.tensor("share", np.full((2, 1), share, dtype=np.float32))
-    graph.tensor("shift", np.full(1, order.platt.shift, dtype=np.float32))
-    graph.node("Gemm", [summed, "share", "shift"], "mean")
-    weight, lever, length = ([NAMES.index(name)] for name in TORQUES_OF)
-    fall = order.platt.slope * order.per_nm / LENGTHS
-    graph.tensor("weight_at", np.array(weight))
-    graph.tensor("levers_at", np.array(lever + length))
-    graph.tensor("fall", np.array([[fall], [-fall * order.usual]], dtype=np.float32))
-    graph.node("Gather", [NUMBERS, "weight_at"], "weight", axis=1)
-    graph.node("Gather", [NUMBERS, "levers_at"], "levers", axis=1)
-    graph.node("MatMul", ["levers", "fall"], "per_newton")
-    graph.node("Mul", ["weight", "per_newton"], "lost")
-    graph.node("Sub", ["mean", "lost"], "column")
+    share = np.array(HEADS, dtype=np.float32)[:, None] * platt.slope / len(networks)
+    graph.tensor("share", share.astype(np.float32))
+    graph.tensor("shift", np.full(1, platt.shift, dtype=np.float32))
+    graph.node("Gemm", [summed, "share", "shift"], "column")
     graph.tensor("column_axis", np.array([1], dtype=np.int64))
     graph.node("Squeeze", ["column", "column_axis"], LOGIT)
     made = helper.make_graph(

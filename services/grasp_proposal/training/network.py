@@ -24,6 +24,8 @@ SEEN, KNOWN, JOINT = 32, (96, 64), 64
 DROPPED = 0.3
 BATCH = 64
 RATE, DECAY = 2e-3, 1e-1
+HEADS = (0.2, 0.8)
+"""What lifting and keeping count for in the order. Keeping is harder, and who keeps lifts."""
 FAR = 4.0
 """Standard deviations at which the numbers are cut off."""
 

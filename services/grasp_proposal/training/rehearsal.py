@@ -1,7 +1,7 @@
 """`python -m services.grasp_proposal.training.rehearsal TRIALS`: what a rehearsal tells.
 
 TRIALS is what `python -m experiments.trials --rehearse` writes, best of objects that the shipped
-network never saw: `--first` beyond the rounds that it was trained on.
+network never saw: `--first` beyond the rounds that it was trained on. Scores are by that network.
 """
 
 from __future__ import annotations
@@ -9,15 +9,16 @@ from __future__ import annotations
 import argparse
 import logging
 from collections.abc import Mapping
+from dataclasses import replace
 from pathlib import Path
 
 import numpy as np
 from numpy.typing import NDArray
 from scipy.optimize import Bounds, brentq
 
-from services.grasp_proposal.learned import sigmoid
+from services.grasp_proposal.learned import LearnedScorer, sigmoid
 from services.grasp_proposal.training.lessons import Lessons, read_lessons
-from services.grasp_proposal.training.order import fit_pairs, pairs
+from services.grasp_proposal.training.ranking import fit_pairs, pairs
 from shared.errors import InvalidInput
 
 Array = NDArray[np.float64]
@@ -116,7 +117,9 @@ def main(arguments: list[str] | None = None) -> None:
     parser = argparse.ArgumentParser(description=__doc__.splitlines()[0])
     parser.add_argument("trials", type=Path)
     logging.basicConfig(level=logging.INFO, format="%(message)s")
-    logger.info(report(read_lessons(parser.parse_args(arguments).trials)))
+    lessons = read_lessons(parser.parse_args(arguments).trials)
+    scores = LearnedScorer().probabilities(lessons.images, lessons.numbers)
+    logger.info(report(replace(lessons, score=scores)))
 
 
 if __name__ == "__main__":

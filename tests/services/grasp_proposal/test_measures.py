@@ -9,7 +9,7 @@ from numpy.typing import NDArray
 from services.grasp_proposal.boxes import support_clearance
 from services.grasp_proposal.contacts import find_contacts
 from services.grasp_proposal.hand import Hand
-from services.grasp_proposal.measures import NAMES, measure, torques
+from services.grasp_proposal.measures import NAMES, measure
 from services.grasp_proposal.placements import Placements
 from services.grasp_proposal.settings import GraspProposalSettings
 from services.grasp_proposal.visibility import SightMap
@@ -27,12 +27,12 @@ DOWN = np.array([[[0.0, 1.0, 0.0], [1.0, 0.0, 0.0], [0.0, 0.0, -1.0]]])
 """The hand's x along the bar's axis, closing across it, from above."""
 
 
-def numbers_at(along: float, body: Array | None = None) -> dict[str, float]:
+def numbers_at(along: float, *bodies: Array) -> dict[str, float]:
     """Return the numbers of a hand at a place of the bar, which lies along y."""
     gripper = load_grippers(None)["panda"]
     assert isinstance(gripper, ParallelGripper)
     hand = Hand.of(gripper, GraspProposalSettings())
-    work = build_workspace(BAR.request(superquadrics=None if body is None else body[None]))
+    work = build_workspace(BAR.request(superquadrics=np.array(bodies) if bodies else None))
     motion = np.linalg.inv(work.outer_from_work)
     rotation = motion[:3, :3] @ DOWN
     origin = (motion[:3, :3] @ np.array([0.0, along, 0.015]) + motion[:3, 3])[None]
@@ -84,13 +84,3 @@ def test_what_was_not_seen_is_in_the_way() -> None:
     assert 0.02 < wide["unseen_more"] < 0.08
     assert wide["unseen_less"] == 0.0
     assert wide["unseen_width"] > wide["width"] + 0.03
-
-
-def test_the_torques_are_the_weight_times_a_lever_and_the_length() -> None:
-    radius = (1e-3 * 3 / 4 / np.pi) ** (1 / 3)
-    ball = np.array([1, 1, radius, radius, radius, 0.0, 0.03, 0.015, 0, 0, 0, 1])
-    found = numbers_at(0.05, ball)
-    ((about_hand, whole),) = torques(np.array([[found[name] for name in NAMES]], dtype=np.float32))
-    assert about_hand == pytest.approx(0.4 * 9.81 * found["lever_length"] / 10, rel=1e-3)
-    assert whole == pytest.approx(0.4 * 9.81 * found["longest"] / 10, rel=1e-3)
-    assert whole > 3 * about_hand

@@ -2,10 +2,10 @@ from __future__ import annotations
 
 import numpy as np
 import pytest
+from scipy.optimize import Bounds
 from sklearn.linear_model import LogisticRegression
 from sklearn.metrics import average_precision_score, roc_auc_score
 
-from services.grasp_proposal.measures import NAMES, TORQUES_OF
 from services.grasp_proposal.training.calibration import fit_platt
 from services.grasp_proposal.training.figures import (
     any_per_view,
@@ -14,8 +14,7 @@ from services.grasp_proposal.training.figures import (
     calibration_error,
     roc_auc,
 )
-from services.grasp_proposal.training.lessons import Lessons
-from services.grasp_proposal.training.order import fit_order, fit_torque
+from services.grasp_proposal.training.ranking import fit_pairs
 
 RNG = np.random.default_rng(5)
 SCORES = np.round(RNG.normal(size=400), 1)  # with ties
@@ -69,69 +68,36 @@ def test_best_of_every_view() -> None:
     assert any_per_view(happened, view).tolist() == [False, True]
 
 
-def test_the_fall_with_torque_is_found_within_questions() -> None:
+def test_weights_are_those_of_a_logistic_regression_over_pairs() -> None:
     rng = np.random.default_rng(3)
     view = np.repeat(np.arange(300), 8)
     ease = np.repeat(rng.normal(0, 3, 300), 8)  # of a question, to all of its grasps
-    logits, torque = rng.normal(size=len(view)), rng.uniform(0, 1, len(view))
-    held = rng.random(len(view)) < 1 / (1 + np.exp(-(1.5 * logits - 6 * torque + ease)))
-    assert fit_torque(logits + ease, torque, held, view) == pytest.approx(4.0, rel=0.15)
-    pairs = [
-        (good, bad)
+    known = np.column_stack([rng.normal(size=len(view)), rng.uniform(0, 1, len(view))])
+    good = rng.random(len(view)) < 1 / (1 + np.exp(-(known @ [1.5, -6.0] + ease)))
+    anything = Bounds([-np.inf, -np.inf], [np.inf, np.inf])
+    found = fit_pairs(known, good, view, anything)
+    assert found == pytest.approx([1.5, -6.0], rel=0.15)
+    both = [
+        (a, b)
         for each in np.unique(view)
-        for good in np.flatnonzero((view == each) & held)
-        for bad in np.flatnonzero((view == each) & ~held)
+        for a in np.flatnonzero((view == each) & good)
+        for b in np.flatnonzero((view == each) & ~good)
     ]
-    number = np.bincount(view[[good for good, _ in pairs]])
-    difference = np.array([[logits[a] - logits[b], torque[a] - torque[b]] for a, b in pairs])
+    number = np.bincount(view[[a for a, _ in both]])
+    difference = np.array([known[a] - known[b] for a, b in both])
     plain = LogisticRegression(C=1e9, fit_intercept=False).fit(
         np.vstack([difference, -difference]),
-        np.repeat([True, False], len(pairs)),
-        np.tile([1 / number[view[good]] for good, _ in pairs], 2),
+        np.repeat([True, False], len(both)),
+        np.tile([1 / number[view[a]] for a, _ in both], 2),
     )
-    expected = -plain.coef_[0, 1] / plain.coef_[0, 0]
-    assert fit_torque(logits, torque, held, view) == pytest.approx(expected, rel=0.01)
+    assert found == pytest.approx(plain.coef_[0], rel=0.01)
+    shifted = known + np.repeat(rng.normal(0, 9, (300, 2)), 8, axis=0)
+    assert fit_pairs(shifted, good, view, anything) == pytest.approx(found, rel=1e-3)
 
 
-def test_torque_never_helps_and_unknown_is_nothing() -> None:
-    logits, view = np.array([0.0, 1.0, 0.5, 2.0]), np.array([0, 0, 1, 1])
-    held, torque = np.array([False, True, True, False]), np.array([0.0, 1.0, 1.0, 0.0])
-    assert fit_torque(np.array([0.0, 1.0, 2.0, 0.5]), torque, held, view) == 0
-    assert fit_torque(logits, torque, np.ones(4, dtype=bool), view) == 0
-    with pytest.raises(ValueError, match="no better"):
-        fit_torque(-logits, np.zeros(4), np.array([False, True, False, True]), view)
-
-
-def test_torque_counts_beyond_what_is_usual_for_an_object() -> None:
-    rng = np.random.default_rng(8)
-    questions = 3000
-    view = np.repeat(np.arange(questions), 6)
-    weight, length = (
-        np.repeat(rng.uniform(0.5, 6, questions), 6),
-        np.repeat(rng.uniform(1, 4, questions), 6),
-    )
-    lever = length * rng.uniform(0, 0.8, len(view))
-    logits = rng.normal(size=len(view))
-    excess = weight * (lever - 0.4 * length) / 10
-    happened = rng.random(len(view)) < 1 / (1 + np.exp(-(0.7 * logits - 2.8 * excess + 0.5)))
-    numbers = np.zeros((len(view), len(NAMES)), dtype=np.float32)
-    for name, column in zip(TORQUES_OF, (weight, lever, length), strict=True):
-        numbers[:, NAMES.index(name)] = column
-    lessons = Lessons(
-        images=np.zeros((len(view), 1), dtype=np.float32),
-        numbers=numbers,
-        lifted=happened,
-        held=happened,
-        moved=np.zeros(len(view), dtype=bool),
-        score=np.full(len(view), 0.5),
-        rehearsed=np.full((len(view), 3), ""),
-        geometric=np.zeros(len(view)),
-        view=view,
-        number=view,
-        object_class=np.full(len(view), "post"),
-    )
-    order = fit_order(lessons, logits)
-    assert order.per_nm == pytest.approx(4.0, rel=0.15)
-    assert order.usual == pytest.approx(0.4, abs=0.06)
-    assert order.platt == pytest.approx((0.7, 0.5), abs=0.1)
-    assert calibration_error(order(logits, numbers), happened) < 0.03
+def test_weights_stay_within_bounds_and_are_nothing_without_pairs() -> None:
+    view, good = np.array([0, 0, 1, 1]), np.array([False, True, True, False])
+    known = np.array([[0.0, 1.0], [1.0, 0.0], [2.0, 0.0], [0.5, 1.0]])
+    bounded = fit_pairs(known, good, view, Bounds([-np.inf, 0.0], [5.0, 5.0]))
+    assert bounded == pytest.approx([5.0, 0.0])
+    assert not fit_pairs(known, np.ones(4, dtype=bool), view, Bounds([0, 0], [1, 1])).any()
