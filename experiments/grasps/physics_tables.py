@@ -28,7 +28,8 @@ def physics_table(judged: Sequence[Judged]) -> Table:
         tuple(rows),
         "One grasp per view and task, no second try; no grasp is a failed trial. A free-flying "
         "hand replays it in PyBullet on the object's true mesh. Lift: raised by 30 cm and held "
-        "for 1 s. Strict: then shaken by 3 cm at 2 Hz and tilted by 60 degrees, still held. "
+        "for 1 s. Strict: then shaken by 3 cm at 2 Hz to the left and right of the camera and "
+        "tilted by 60 degrees away from it, still held. "
         "Right part: the object point nearest to the grasp is in the labelled region.",
     )
 
