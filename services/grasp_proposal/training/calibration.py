@@ -27,30 +27,22 @@ class Platt(NamedTuple):
 def fit_platt(logits: Array, happened: NDArray[np.bool_]) -> Platt:
     """Return the map of logits (G,) that makes what happened (G,) most likely.
 
+    The targets are Platt's, so that few samples do not make it certain.
+
     Raises
     ------
     ValueError
         Higher logits are no more likely, so that no map keeps their order.
     """
-    (slope,), shift = logistic(logits[:, None], happened)
-    if slope <= 0:
-        raise ValueError(f"higher logits are no more likely: slope {slope:.3g}")
-    return Platt(float(slope), shift)
-
-
-def logistic(known: Array, happened: NDArray[np.bool_]) -> tuple[Array, float]:
-    """Return the weights (K,) of what is known (G, K), and the shift, of a logistic regression.
-
-    The targets are Platt's, so that few samples do not make it certain.
-    """
     positive = int(happened.sum())
     negative = len(happened) - positive
     target = np.where(happened, (positive + 1) / (positive + 2), 1 / (negative + 2))
-    design = np.column_stack([known, np.ones(len(known))])
-    start = np.zeros(design.shape[1])
-    start[-1] = np.log(target.mean() / (1 - target.mean()))
-    weights = minimize(_loss, start, args=(design, target), jac=True, method="BFGS").x
-    return weights[:-1], float(weights[-1])
+    design = np.column_stack([logits, np.ones(len(logits))])
+    start = np.array([0.0, np.log(target.mean() / (1 - target.mean()))])
+    slope, shift = minimize(_loss, start, args=(design, target), jac=True, method="BFGS").x
+    if slope <= 0:
+        raise ValueError(f"higher logits are no more likely: slope {slope:.3g}")
+    return Platt(float(slope), float(shift))
 
 
 def _loss(weights: Array, design: Array, target: Array) -> tuple[float, Array]:

@@ -24,7 +24,7 @@ def to_onnx(networks: Sequence[Network], platt: Platt) -> ModelProto:
     heads = [graph.add_network(f"n{index}_", each) for index, each in enumerate(networks)]
     summed = heads[0] if len(heads) == 1 else graph.node("Sum", heads, "heads")
     share = np.array(HEADS, dtype=np.float32)[:, None] * platt.slope / len(networks)
-    graph.tensor("share", share.astype(np.float32))
+    graph.tensor("share", share)
     graph.tensor("shift", np.full(1, platt.shift, dtype=np.float32))
     graph.node("Gemm", [summed, "share", "shift"], "column")
     graph.tensor("column_axis", np.array([1], dtype=np.int64))

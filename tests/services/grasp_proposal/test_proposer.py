@@ -175,6 +175,8 @@ def test_says_which_hands_keep_away_from_the_rest() -> None:
         between = (x < hand.finger_width / 2) & (y < row[7] / 2) & (z < hand.tip_beyond_tcp)
         palm = (x < hand.palm_size[0] / 2) & (y < hand.palm_size[1] / 2) & (z < front + 0.009)
         assert not (clear and (between | palm).any())
+    nearly_all = along > along.min() + 0.9 * hand.finger_width  # the rest is beside the focus
+    assert propose(CYLINDER, focus=nearly_all).keeps_clear.all()
     far = answer.grasps[:, :3] @ about_z(0.5)[:, 1] > 0.06
     assert answer.keeps_clear[far].mean() > answer.keeps_clear[~far].mean()
 
