@@ -25,7 +25,7 @@ child.kill()
 CHILD = """
 import time
 held = b"x" * 50_000_000
-while time.process_time() < 0.4:
+while time.process_time() < 0.5:
     pass
 print("worked", flush=True)
 time.sleep(60)
@@ -39,7 +39,7 @@ def test_the_work_of_a_child_counts() -> None:
         process.stdout.readline()
         used = usage(process.pid)
         process.communicate()
-    assert used.cpu_s >= 0.4
+    assert used.cpu_s >= 0.4  # of 0.5: the kernel cuts user and system time to ticks of 10 ms each
     assert used.peak_mb >= 50
     with pytest.raises(ProcessLookupError):
         usage(process.pid)
