@@ -194,6 +194,105 @@ def squeeze_bottle(
     return CatalogueObject("squeeze_bottle", "oval squeeze bottle", parts, REGIONS)
 
 
+def sauce_bottle(
+    *,
+    width: float = 0.085,
+    depth: float = 0.056,
+    body_height: float = 0.130,
+    shoulder_height: float = 0.025,
+    waist: float = 0.9,
+    exponent: float = 2.4,
+    cap_diameter: float = 0.036,
+    cap_height: float = 0.022,
+    cap_taper: float = 0.9,
+    nozzle_diameter: float = 0.018,
+    nozzle_height: float = 0.018,
+) -> CatalogueObject:
+    """Return a full bottle whose shoulders slope up to a cap as wide as they end, on z = 0.
+
+    All lengths in metres; `waist` and `cap_taper` are shares of the width and of the cap's
+    diameter, `exponent` rounds the cross-section as in `limb`. Without a nozzle (height 0) the
+    cap is a flip top.
+    """
+    top = body_height + shoulder_height
+    over = 1.05  # shoulders are round: halfway up they are wider than halfway between their ends
+
+    def halfway(size: float) -> float:
+        return max(cap_diameter, over * (size + cap_diameter) / 2)
+
+    body = limb(
+        [(0, 0, 0), (0, 0, body_height)],
+        [
+            (0.0, 0.96 * width, 0.96 * depth),
+            (0.12, width, depth),
+            (0.45, waist * width, (waist + 1) / 2 * depth),
+            (0.85, 0.98 * width, 0.98 * depth),
+            (1.0, 0.90 * width, 0.93 * depth),
+        ],
+        (1, 0, 0),
+        exponent=exponent,
+        round_start=0.006,
+        segments=48,
+    )
+    shoulder = limb(
+        [(0, 0, body_height), (0, 0, top)],
+        [
+            (0.0, 0.90 * width, 0.93 * depth),
+            (0.5, halfway(0.90 * width), halfway(0.93 * depth)),
+            (1.0, cap_diameter, cap_diameter),
+        ],
+        (1, 0, 0),
+        exponent=exponent,
+        segments=48,
+    )
+    radius, high = cap_diameter / 2, top + cap_height
+    profile = [
+        (0, top - 0.001),
+        (radius, top - 0.001),
+        (radius * (1 + 3 * cap_taper) / 4, top + 0.8 * cap_height),
+        (radius * cap_taper - 0.001, high),
+    ]
+    if nozzle_height > 0:
+        nozzle, tip = nozzle_diameter / 2, high + nozzle_height
+        profile += [
+            (nozzle, high + 0.0005),
+            (0.8 * nozzle, tip - 0.001),
+            (0.7 * nozzle, tip),
+            (0, tip),
+        ]
+    else:
+        profile += [(0, high)]
+    parts = (
+        Part("body", (body,), WATER),
+        Part("shoulder", (shoulder,), WATER),
+        Part("cap", (revolve(profile),), WATER),
+    )
+    regions = {"pouring": ("body", "shoulder"), "handover": ("cap",)}
+    return CatalogueObject("sauce_bottle", "sauce bottle without a neck", parts, regions)
+
+
+def any_sauce_bottle(rng: np.random.Generator) -> CatalogueObject:
+    """Return a random bottle without a neck, oval or round, with a nozzle or a flip top."""
+    size = between(rng, 0.75, 1.16)
+    width = around(rng, 0.085 * size, 0.1)
+    depth = width * between(rng, 0.58, 1.0)
+    cap = min(around(rng, 0.036, 0.2), 0.85 * depth)
+    with_nozzle = rng.random() < 0.6
+    return sauce_bottle(
+        width=width,
+        depth=depth,
+        body_height=around(rng, 0.130 * size, 0.12),
+        shoulder_height=between(rng, 0.15, 0.9) * (width - cap),
+        waist=between(rng, 0.8, 1.0),
+        exponent=between(rng, 2.0, 2.8),
+        cap_diameter=cap,
+        cap_height=around(rng, 0.022, 0.25),
+        cap_taper=between(rng, 0.75, 1.0),
+        nozzle_diameter=cap * between(rng, 0.35, 0.65),
+        nozzle_height=around(rng, 0.018, 0.25) if with_nozzle else 0.0,
+    )
+
+
 def any_bottle(rng: np.random.Generator) -> CatalogueObject:
     """Return a random bottle: a wide one is tall, its neck grows more slowly."""
     kind = rng.integers(3)

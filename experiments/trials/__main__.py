@@ -1,7 +1,8 @@
 """`python -m experiments.trials OUT --url URL`: try grasps in physics, those that are missing.
 
 The backend at URL proposes the grasps and executes them. The objects are random variants
-of the catalogue's classes, drawn from random numbers that no experiment draws from.
+of the catalogue's classes and bottles held by their caps, drawn from random numbers that no
+experiment draws from.
 """
 
 from __future__ import annotations
@@ -10,8 +11,8 @@ import argparse
 import logging
 from pathlib import Path
 
-from experiments.catalogue import CLASSES
 from experiments.trials.collecting import collect, wait_until_ready
+from experiments.trials.scenes import PER_ROUND
 
 
 def main(arguments: list[str] | None = None) -> None:
@@ -22,7 +23,7 @@ def main(arguments: list[str] | None = None) -> None:
     parser.add_argument("out", type=Path)
     parser.add_argument("--url", default="http://127.0.0.1:8000", help="the backend")
     parser.add_argument("--wait", type=float, default=0.0, help="seconds until it is ready")
-    parser.add_argument("--objects", type=int, default=780, help="how many, of all classes")
+    parser.add_argument("--objects", type=int, default=1140, help="how many, of all kinds")
     parser.add_argument("--first", type=int, default=0, help="round to begin with")
     parser.add_argument("--each", type=int, default=6, help="grasps per question, two questions")
     parser.add_argument("--views", type=int, default=2, help="of each object")
@@ -36,7 +37,7 @@ def main(arguments: list[str] | None = None) -> None:
     logging.getLogger("httpx").setLevel(logging.WARNING)
     given.out.mkdir(parents=True, exist_ok=True)
     wait_until_ready(given.url, given.wait)
-    rounds = -(-given.objects // len(CLASSES))
+    rounds = -(-given.objects // sum(PER_ROUND.values()))
     collect(
         given.out,
         given.url,

@@ -15,12 +15,12 @@ from urllib.request import urlopen
 from numpy.typing import NDArray
 from rich.console import Console
 
-from experiments.catalogue import CLASSES, CatalogueObject
+from experiments.catalogue import CatalogueObject
 from experiments.dataset.drop import body_of
 from experiments.dataset.processes import carry_out
 from experiments.framework.knowledge import added_tasks, affordances, name_prefix
 from experiments.grasps.blind import blind_tasks
-from experiments.trials.scenes import draw_object, draw_scene
+from experiments.trials.scenes import PER_ROUND, draw_object, draw_scene
 from experiments.trials.trials import Judge, try_out
 from shared.client import Sparge, connect
 from shared.errors import InvalidInput, StageUnavailable
@@ -30,7 +30,7 @@ from shared.schemas.grasp import LIST_GRIPPERS
 from shared.schemas.route import Nothing
 from shared.wire.npz import write_npz
 
-NAME = "{class_name}-{number}-{view}.npz"
+NAME = "{kind}-{number}-{view}.npz"
 EMPTY = ".none"
 """Suffix of the mark that a scene has no grasp to try, so that it is not asked for again."""
 
@@ -38,10 +38,20 @@ logger = logging.getLogger(__name__)
 
 
 class Job(NamedTuple):
-    """Which object."""
+    """Which object: of which kind of `PER_ROUND`, and which of them."""
 
-    class_name: str
+    kind: str
     number: int
+
+
+def jobs_of(rounds: range) -> list[Job]:
+    """Return the objects of some rounds, round by round."""
+    return [
+        Job(kind, number * count + index)
+        for number in rounds
+        for kind, count in PER_ROUND.items()
+        for index in range(count)
+    ]
 
 
 @dataclass(frozen=True)
@@ -76,14 +86,14 @@ class Collector:
     rehearse: bool = False
 
     def path(self, job: Job, view: int) -> Path:
-        return self.folder / NAME.format(class_name=job.class_name, number=job.number, view=view)
+        return self.folder / NAME.format(kind=job.kind, number=job.number, view=view)
 
     def is_done(self, job: Job) -> bool:
         paths = [self.path(job, view) for view in range(self.views)]
         return all(path.exists() or path.with_suffix(EMPTY).exists() for path in paths)
 
     def __call__(self, job: Job) -> None:
-        thing = draw_object(job.class_name, job.number, self.seed)
+        thing = draw_object(job.kind, job.number, self.seed)
         for view in range(self.views):
             arrays = self._try_out(thing, view)
             path = self.path(job, view)
@@ -144,7 +154,7 @@ def collect(
     judge: Callable[[Sparge], Judge] = by_backend,
     rehearse: bool = False,
 ) -> None:
-    """Write a file for every class and round that has none yet."""
+    """Write a file for every object of every round that has none yet."""
     console = Console(stderr=True)
     with connect(url) as sparge:
         listed = sparge.call(LIST_GRIPPERS, Nothing()).grippers
@@ -161,10 +171,9 @@ def collect(
                 judge,
                 rehearse,
             )
-            jobs = [Job(name, number) for number in rounds for name in CLASSES]
-            missing = [job for job in jobs if not work.is_done(job)]
+            missing = [job for job in jobs_of(rounds) if not work.is_done(job)]
             started = time.perf_counter()
             for done, _ in enumerate(carry_out(work, missing, workers), start=1):
-                if done % len(CLASSES) == 0 or done == len(missing):
+                if done % 20 == 0 or done == len(missing):
                     spent = time.perf_counter() - started
                     logger.info("%d of %d objects, %.0f s", done, len(missing), spent)

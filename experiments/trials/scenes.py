@@ -9,7 +9,8 @@ import open3d as o3d
 from numpy.typing import NDArray
 
 from experiments.camera import StereoNoise
-from experiments.catalogue import CatalogueObject, variant
+from experiments.catalogue import CLASSES, CatalogueObject, variant
+from experiments.catalogue.bottles import any_sauce_bottle
 from experiments.catalogue.mass import mass_properties, solid_properties
 from experiments.dataset.drop import Body
 from experiments.dataset.make import make_view
@@ -19,6 +20,10 @@ from experiments.parts.warp import warped
 
 Array = NDArray[np.float64]
 
+SAUCE_BOTTLE = "sauce_bottle"
+PER_ROUND = {**dict.fromkeys(CLASSES, 1), SAUCE_BOTTLE: 6}
+"""How many objects of each kind a round of trials has: every class of the catalogue's variants, and
+bottles that are asked about for their caps, where weight, lever and shoulders decide (0020)."""
 PLAIN = 0.4
 """Share of objects that are not warped."""
 CLEAN = 0.35
@@ -63,13 +68,19 @@ class Scene:
     sigma_at_1m: float
 
 
-def draw_object(class_name: str, number: int, seed: int) -> CatalogueObject:
-    """Return object `number` of a class; it depends on the three arguments alone."""
-    rng = generator(seed, f"object to try grasps on: {class_name}", number)
-    thing = variant(class_name, rng)
+def draw_object(kind: str, number: int, seed: int) -> CatalogueObject:
+    """Return object `number` of a kind of `PER_ROUND`; it depends on the three arguments alone."""
+    rng = generator(seed, f"object to try grasps on: {kind}", number)
+    thing = _capped(rng) if kind == SAUCE_BOTTLE else variant(kind, rng)
     if rng.random() > PLAIN:
         thing = warped(thing, rng)
-    return replace(thing, name=f"{class_name}-{number}")
+    return replace(thing, name=f"{kind}-{number}")
+
+
+def _capped(rng: np.random.Generator) -> CatalogueObject:
+    """Return a bottle of which only the cap is asked for: bodies, others have enough of."""
+    thing = any_sauce_bottle(rng)
+    return replace(thing, class_name=SAUCE_BOTTLE, regions={"handover": ("cap",)})
 
 
 def draw_scene(body: Body, view: int, seed: int) -> Scene:

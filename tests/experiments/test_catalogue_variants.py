@@ -10,6 +10,7 @@ import open3d as o3d
 import pytest
 
 from experiments.catalogue import CLASSES, CatalogueObject, build, mass_properties, variant
+from experiments.catalogue.bottles import any_sauce_bottle, sauce_bottle
 from experiments.catalogue.draws import around
 from tests.experiments.test_catalogue import assert_watertight
 
@@ -50,6 +51,23 @@ def test_variants_are_sound(class_name: str) -> None:
         assert len(thing.vertices) < 10_000
         surface = thing.surface
         assert set(np.unique(surface.part)) == set(range(len(thing.parts)))
+
+
+def test_sauce_bottles_are_sound_and_end_in_their_caps() -> None:
+    for seed in range(COUNT):
+        thing = any_sauce_bottle(np.random.default_rng([seed, 3]))
+        body, shoulder, cap = (part.meshes[0] for part in thing.parts)
+        for mesh in (body, shoulder, cap):
+            assert_watertight(mesh)
+        assert 0.09 < np.ptp(thing.vertices, axis=0).max() < 0.30
+        assert 0.1 < mass_properties(thing).mass < 2.0
+        foot = cap.vertices[cap.vertices[:, 2] < cap.vertices[:, 2].min() + 1e-6]
+        end = shoulder.vertices[shoulder.vertices[:, 2] > shoulder.vertices[:, 2].max() - 1e-6]
+        assert np.ptp(foot[:, 0]) == pytest.approx(np.ptp(end[:, 0]), rel=0.01)
+        assert np.ptp(cap.vertices[:, 0]) < np.ptp(body.vertices[:, 0])
+    flip_top, with_nozzle = sauce_bottle(nozzle_height=0.0), sauce_bottle(nozzle_height=0.02)
+    taller = with_nozzle.vertices[:, 2].max() - flip_top.vertices[:, 2].max()
+    assert taller == pytest.approx(0.02, abs=1e-6)
 
 
 @pytest.mark.parametrize("class_name", CLASSES)

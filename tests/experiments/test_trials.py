@@ -10,9 +10,11 @@ import pytest
 from experiments.catalogue.mass import mass_properties
 from experiments.dataset.drop import body_of
 from experiments.trials.candidates import spread
-from experiments.trials.collecting import Collector, Job, wait_until_ready
+from experiments.trials.collecting import Collector, Job, jobs_of, wait_until_ready
 from experiments.trials.scenes import (
     MASSES,
+    PER_ROUND,
+    SAUCE_BOTTLE,
     TRIANGLES,
     draw_mass,
     draw_object,
@@ -64,6 +66,24 @@ def test_objects_depend_on_seed_class_and_number_alone() -> None:
     assert one.vertices.shape != (other := draw_object("mug", 4, 7).vertices).shape or (
         np.abs(one.vertices - other).max() > 1e-4
     )
+
+
+def test_a_round_has_so_many_of_each_kind_and_none_comes_twice() -> None:
+    jobs = jobs_of(range(3, 5))
+    assert len(set(jobs)) == len(jobs) == 2 * sum(PER_ROUND.values())
+    assert {kind: sum(job.kind == kind for job in jobs) for kind in PER_ROUND} == {
+        kind: 2 * count for kind, count in PER_ROUND.items()
+    }
+    assert not set(jobs) & set(jobs_of(range(5, 7)))
+    assert jobs_of(range(3, 4)) == jobs[: len(jobs) // 2], "a longer run goes on with a shorter one"
+
+
+def test_of_a_sauce_bottle_the_cap_alone_is_wanted() -> None:
+    thing = draw_object(SAUCE_BOTTLE, 4, 0)
+    assert thing.tasks == ("handover",)
+    assert thing.regions["handover"] == ("cap",)
+    assert thing.class_name == SAUCE_BOTTLE
+    assert thing.name == "sauce_bottle-4"
 
 
 def test_the_executed_mesh_is_the_object_with_fewer_triangles() -> None:

@@ -33,10 +33,10 @@ Made by `{command}`, sha256
 `{sha256}`.
 
 Trained on {len(lessons)} grasps tried in physics on {objects} objects, random variants of the
-catalogue's classes alone on a table, with and without stereo noise
-(`python -m experiments.trials`). {lifted:.0f} % of the grasps lift, {held:.0f} % keep the object
-when shaken. {int(lessons.moved.sum())} of them were moved by some millimetres and degrees; these
-only teach.
+catalogue's classes, and bottles that are held by their caps, alone on a table, with and without
+stereo noise (`python -m experiments.trials`). {lifted:.0f} % of the grasps lift, {held:.0f} % keep
+the object when shaken. {int(lessons.moved.sum())} of them were moved by some millimetres and
+degrees; these only teach.
 
 Figures over {figures["grasps"]} grasps as they were proposed, of {figures["views"]} questions,
 each scored by networks that were trained without its object (cross-validation by objects; the
@@ -51,6 +51,12 @@ the one with the highest score.
 | any of the tried | | | | | {_percent(oracle["lifted"])} | {_percent(oracle["held"])} |
 
 Expected calibration error of lifting (10 bins): {figures["calibration_error"]:.3f}.
+
+How often the best of view keeps the object, by what it is:
+
+| kind | questions | network | boosting | geometric | any of the tried |
+| --- | --- | --- | --- | --- | --- |
+{_kinds(figures["kinds"])}
 """
 
 
@@ -63,6 +69,15 @@ def _rows(scores: Mapping[str, Mapping[str, Mapping[str, float]]]) -> str:
             f"| {held['auc']:.3f} | {_percent(lift['top1'])} | {_percent(held['top1'])} |"
         )
     return "\n".join(rows)
+
+
+def _kinds(kinds: Mapping[str, Mapping[str, float]]) -> str:
+    return "\n".join(
+        f"| {name} | {each['views']} | "
+        + " | ".join(_percent(each[key]) for key in (*_NAMES, "any"))
+        + " |"
+        for name, each in kinds.items()
+    )
 
 
 def _percent(share: float) -> str:

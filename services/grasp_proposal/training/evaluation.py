@@ -15,6 +15,7 @@ from services.grasp_proposal.training.figures import (
     any_per_view,
     average_precision,
     best_per_view,
+    by_kind,
     calibration_error,
     roc_auc,
 )
@@ -109,6 +110,7 @@ def report(lessons: Lessons, found: HeldOut) -> dict[str, Any]:
         "scores": by_score,
         "chance": {name: float(each.mean()) for name, each in _labels(shown).items()},
         "oracle": oracle,
+        "kinds": by_kind(shown.object_class, shown.view, scores, shown.held),
     }
 
 

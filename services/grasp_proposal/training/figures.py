@@ -2,6 +2,8 @@
 
 from __future__ import annotations
 
+from collections.abc import Mapping
+
 import numpy as np
 from numpy.typing import NDArray
 from scipy.stats import rankdata
@@ -53,3 +55,23 @@ def best_per_view(scores: Array, view: NDArray[np.intp]) -> NDArray[np.intp]:
 def any_per_view(happened: Mask, view: NDArray[np.intp]) -> Mask:
     """Return for every view, in order, whether one of its rows happened."""
     return np.array([happened[view == each].any() for each in np.unique(view)])
+
+
+def by_kind(
+    kind: NDArray[np.str_], view: NDArray[np.intp], scores: Mapping[str, Array], happened: Mask
+) -> dict[str, dict[str, float]]:
+    """Return for each kind of object how many views it has and in which share of them it happened.
+
+    To the grasp with the highest of each score, and to `any`.
+    """
+    found = {}
+    for each in np.unique(kind):
+        mine = kind == each
+        seen, came = view[mine], happened[mine]
+        shares = {
+            name: float(came[best_per_view(score[mine], seen)].mean())
+            for name, score in scores.items()
+        }
+        anything = any_per_view(came, seen)
+        found[str(each)] = {"views": len(anything), **shares, "any": float(anything.mean())}
+    return found

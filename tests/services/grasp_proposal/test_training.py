@@ -133,5 +133,7 @@ def test_a_network_learns_is_exported_and_is_the_same_again(
         out = tmp_path / name / "scorer.onnx"
         train(folder, out, folds=2, epochs=20, networks=1, seed=3)
         made.append(out.read_bytes())
-        assert "calibration error" in out.with_suffix(".md").read_text()
+        told = out.with_suffix(".md").read_text()
+        assert "calibration error" in told
+        assert "| post | 6 |" in told
     assert made[0] == made[1]

@@ -11,6 +11,7 @@ from services.grasp_proposal.training.figures import (
     any_per_view,
     average_precision,
     best_per_view,
+    by_kind,
     calibration_error,
     roc_auc,
 )
@@ -101,3 +102,18 @@ def test_weights_stay_within_bounds_and_are_nothing_without_pairs() -> None:
     bounded = fit_pairs(known, good, view, Bounds([-np.inf, 0.0], [5.0, 5.0]))
     assert bounded == pytest.approx([5.0, 0.0])
     assert not fit_pairs(known, np.ones(4, dtype=bool), view, Bounds([0, 0], [1, 1])).any()
+
+
+def test_each_kind_of_object_is_counted_by_its_own_views() -> None:
+    kind = np.array(["mug", "mug", "mug", "pan", "pan"])
+    view = np.array([0, 0, 1, 2, 2])
+    happened = np.array([False, True, True, True, False])
+    scores = {
+        "right": np.array([0.1, 0.9, 0.5, 0.9, 0.1]),
+        "wrong": np.array([0.9, 0.1, 0.5, 0.1, 0.9]),
+    }
+    found = by_kind(kind, view, scores, happened)
+    assert found == {
+        "mug": {"views": 2, "right": 1.0, "wrong": 0.5, "any": 1.0},
+        "pan": {"views": 1, "right": 1.0, "wrong": 0.0, "any": 1.0},
+    }
