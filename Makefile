@@ -71,7 +71,7 @@ catalogue: setup  ## The contact sheet of all objects, docs/images/catalogue.png
 	@.venv/bin/python -m experiments.contact_sheet
 
 TRIALS ?= out/trials
-OBJECTS ?= 1140
+OBJECTS ?= 1200
 TRIAL_PORT ?= 8399
 TORCH ?= torch==2.13.0 --extra-index-url https://download.pytorch.org/whl/cpu
 

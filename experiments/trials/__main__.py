@@ -23,7 +23,7 @@ def main(arguments: list[str] | None = None) -> None:
     parser.add_argument("out", type=Path)
     parser.add_argument("--url", default="http://127.0.0.1:8000", help="the backend")
     parser.add_argument("--wait", type=float, default=0.0, help="seconds until it is ready")
-    parser.add_argument("--objects", type=int, default=1140, help="how many, of all kinds")
+    parser.add_argument("--objects", type=int, default=1200, help="how many, of all kinds")
     parser.add_argument("--first", type=int, default=0, help="round to begin with")
     parser.add_argument("--each", type=int, default=6, help="grasps per question, two questions")
     parser.add_argument("--views", type=int, default=2, help="of each object")

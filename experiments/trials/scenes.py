@@ -21,9 +21,10 @@ from experiments.parts.warp import warped
 Array = NDArray[np.float64]
 
 SAUCE_BOTTLE = "sauce_bottle"
-PER_ROUND = {**dict.fromkeys(CLASSES, 1), SAUCE_BOTTLE: 6}
-"""How many objects of each kind a round of trials has: every class of the catalogue's variants, and
-bottles that are asked about for their caps, where weight, lever and shoulders decide (0020)."""
+PER_ROUND = {**dict.fromkeys(CLASSES, 1), "box": 2, SAUCE_BOTTLE: 6}
+"""How many objects of each kind a round of trials has: every class of the catalogue's variants,
+boxes twice, whose edges are all that is narrow enough and never hold, and bottles that are asked
+about for their caps, where weight, lever and shoulders decide (0020)."""
 PLAIN = 0.4
 """Share of objects that are not warped."""
 CLEAN = 0.35
