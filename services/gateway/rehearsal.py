@@ -27,9 +27,9 @@ AT_MOST = 2
 HELD: tuple[Outcome, ...] = tuple("held" for _ in BELIEVED)
 _SCORE = 8
 _EVIDENCE: MappingProxyType[Outcome, float] = MappingProxyType(
-    {"held": 1.61, "slipped_in_shake": 0.65}
+    {"held": 1.24, "slipped_in_shake": 0.41}
 )
-_LOST = -0.88
+_LOST = -0.95
 """What each outcome, the last all others, adds to the logit of lifting: as
 `python -m services.grasp_proposal.training.rehearsal` printed it."""
 
