@@ -12,7 +12,7 @@ import logging
 from pathlib import Path
 
 from experiments.trials.collecting import collect, wait_until_ready
-from experiments.trials.scenes import PER_ROUND
+from experiments.trials.scenes import ROUND
 
 
 def main(arguments: list[str] | None = None) -> None:
@@ -37,7 +37,7 @@ def main(arguments: list[str] | None = None) -> None:
     logging.getLogger("httpx").setLevel(logging.WARNING)
     given.out.mkdir(parents=True, exist_ok=True)
     wait_until_ready(given.url, given.wait)
-    rounds = -(-given.objects // sum(PER_ROUND.values()))
+    rounds = -(-given.objects // ROUND)
     collect(
         given.out,
         given.url,

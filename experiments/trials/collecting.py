@@ -20,7 +20,7 @@ from experiments.dataset.drop import body_of
 from experiments.dataset.processes import carry_out
 from experiments.framework.knowledge import added_tasks, affordances, name_prefix
 from experiments.grasps.blind import blind_tasks
-from experiments.trials.scenes import PER_ROUND, draw_object, draw_scene
+from experiments.trials.scenes import PER_ROUND, ROUND, draw_object, draw_scene
 from experiments.trials.trials import Judge, try_out
 from shared.client import Sparge, connect
 from shared.errors import InvalidInput, StageUnavailable
@@ -174,6 +174,6 @@ def collect(
             missing = [job for job in jobs_of(rounds) if not work.is_done(job)]
             started = time.perf_counter()
             for done, _ in enumerate(carry_out(work, missing, workers), start=1):
-                if done % 20 == 0 or done == len(missing):
+                if done % ROUND == 0 or done == len(missing):
                     spent = time.perf_counter() - started
                     logger.info("%d of %d objects, %.0f s", done, len(missing), spent)

@@ -25,6 +25,8 @@ PER_ROUND = {**dict.fromkeys(CLASSES, 1), "box": 2, SAUCE_BOTTLE: 6}
 """How many objects of each kind a round of trials has: every class of the catalogue's variants,
 boxes twice, whose edges are all that is narrow enough and never hold, and bottles that are asked
 about for their caps, where weight, lever and shoulders decide (0020)."""
+ROUND = sum(PER_ROUND.values())
+"""Objects of a round."""
 PLAIN = 0.4
 """Share of objects that are not warped."""
 CLEAN = 0.35
@@ -79,7 +81,7 @@ def draw_object(kind: str, number: int, seed: int) -> CatalogueObject:
 
 
 def _capped(rng: np.random.Generator) -> CatalogueObject:
-    """Return a bottle of which only the cap is asked for: bodies, others have enough of."""
+    """Return a bottle of which only the cap is asked for; others teach bodies."""
     thing = any_sauce_bottle(rng)
     return replace(thing, class_name=SAUCE_BOTTLE, regions={"handover": ("cap",)})
 
