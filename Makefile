@@ -71,7 +71,7 @@ catalogue: setup  ## The contact sheet of all objects, docs/images/catalogue.png
 	@.venv/bin/python -m experiments.contact_sheet
 
 TRIALS ?= out/trials
-OBJECTS ?= 1200
+OBJECTS ?=
 TRIAL_PORT ?= 8399
 TORCH ?= torch==2.13.0 --extra-index-url https://download.pytorch.org/whl/cpu
 
@@ -81,7 +81,7 @@ train-grasps: dev  ## The scorer of grasps anew: trials in physics, then trainin
 	@SPARGE_EXECUTION_WORKERS=2 .venv/bin/sparge serve --port $(TRIAL_PORT) --log-level warning & \
 	backend=$$!; trap "kill $$backend" EXIT; \
 	.venv/bin/python -m experiments.trials $(TRIALS) --url http://127.0.0.1:$(TRIAL_PORT) \
-		--wait 300 --workers 2 --objects $(OBJECTS)
+		--wait 300 --workers 2 $(if $(OBJECTS),--objects $(OBJECTS))
 	@.venv/bin/python -m services.grasp_proposal.train $(TRIALS)
 
 docs: dev  ## The documentation site, out/site/index.html; a broken link fails it

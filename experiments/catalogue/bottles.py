@@ -144,12 +144,9 @@ def squeeze_bottle(
     """Return a full squeeze bottle, oval, with a tapered spout, on z = 0; metres."""
     top = body_height + shoulder_height
     waist, neck = 0.93, neck_diameter
-
-    def stack(low: float, high: float, profile: list[tuple[float, float, float]]) -> Mesh:
-        return limb([(0, 0, low), (0, 0, high)], profile, (1, 0, 0), exponent=2.3, segments=48)
-
-    body = limb(
-        [(0, 0, 0), (0, 0, body_height)],
+    body = _oval(
+        0,
+        body_height,
         [
             (0.0, 0.96 * width, 0.95 * depth),
             (0.15, width, depth),
@@ -157,12 +154,10 @@ def squeeze_bottle(
             (0.85, 0.98 * width, 0.98 * depth),
             (1.0, 0.92 * width, 0.95 * depth),
         ],
-        (1, 0, 0),
         exponent=2.3,
         round_start=0.007,
-        segments=48,
     )
-    shoulder = stack(
+    shoulder = _oval(
         body_height,
         top,
         [
@@ -171,6 +166,7 @@ def squeeze_bottle(
             (0.8, 1.2 * neck, 1.15 * neck),
             (1.0, neck, neck),
         ],
+        exponent=2.3,
     )
     lip = top + 0.010
     spout = revolve(
@@ -220,8 +216,9 @@ def sauce_bottle(
     def halfway(size: float) -> float:
         return max(cap_diameter, over * (size + cap_diameter) / 2)
 
-    body = limb(
-        [(0, 0, 0), (0, 0, body_height)],
+    body = _oval(
+        0,
+        body_height,
         [
             (0.0, 0.96 * width, 0.96 * depth),
             (0.12, width, depth),
@@ -229,21 +226,18 @@ def sauce_bottle(
             (0.85, 0.98 * width, 0.98 * depth),
             (1.0, 0.90 * width, 0.93 * depth),
         ],
-        (1, 0, 0),
         exponent=exponent,
         round_start=0.006,
-        segments=48,
     )
-    shoulder = limb(
-        [(0, 0, body_height), (0, 0, top)],
+    shoulder = _oval(
+        body_height,
+        top,
         [
             (0.0, 0.90 * width, 0.93 * depth),
             (0.5, halfway(0.90 * width), halfway(0.93 * depth)),
             (1.0, cap_diameter, cap_diameter),
         ],
-        (1, 0, 0),
         exponent=exponent,
-        segments=48,
     )
     radius, high = cap_diameter / 2, top + cap_height
     profile = [
@@ -324,6 +318,25 @@ def any_bottle(rng: np.random.Generator) -> CatalogueObject:
         shoulder_height=around(rng, 0.030 * size, 0.15),
         neck_diameter=around(rng, 0.030 * size**0.5, 0.08),
         cap_height=around(rng, 0.032, 0.15),
+    )
+
+
+def _oval(
+    low: float,
+    high: float,
+    profile: list[tuple[float, float, float]],
+    *,
+    exponent: float,
+    round_start: float = 0.0,
+) -> Mesh:
+    """Return a piece of an upright bottle whose cross-section varies from low to high (`limb`)."""
+    return limb(
+        [(0, 0, low), (0, 0, high)],
+        profile,
+        (1, 0, 0),
+        exponent=exponent,
+        round_start=round_start,
+        segments=48,
     )
 
 

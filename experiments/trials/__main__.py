@@ -14,6 +14,9 @@ from pathlib import Path
 from experiments.trials.collecting import collect, wait_until_ready
 from experiments.trials.scenes import ROUND
 
+ROUNDS = 60
+"""So many are tried in an hour and a quarter on two busy cores."""
+
 
 def main(arguments: list[str] | None = None) -> None:
     """Parse the command line and collect."""
@@ -23,7 +26,7 @@ def main(arguments: list[str] | None = None) -> None:
     parser.add_argument("out", type=Path)
     parser.add_argument("--url", default="http://127.0.0.1:8000", help="the backend")
     parser.add_argument("--wait", type=float, default=0.0, help="seconds until it is ready")
-    parser.add_argument("--objects", type=int, default=1200, help="how many, of all kinds")
+    parser.add_argument("--objects", type=int, default=ROUNDS * ROUND, help="how many")
     parser.add_argument("--first", type=int, default=0, help="round to begin with")
     parser.add_argument("--each", type=int, default=6, help="grasps per question, two questions")
     parser.add_argument("--views", type=int, default=2, help="of each object")
