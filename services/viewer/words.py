@@ -56,8 +56,8 @@ def rejected_in_words(hand: RejectedGrasp) -> str:
 def _rehearsed(answer: GraspAnswer) -> list[str]:
     """Return what came of trying grasps in simulation before they were answered, if any were."""
     came = [
-        f"grasp {number}: {', '.join(grasp.rehearsed).replace('_', ' ')}"
-        for number, grasp in enumerate(answer.grasps, start=1)
+        f"rank {rank}: {', '.join(grasp.rehearsed).replace('_', ' ')}"
+        for rank, grasp in enumerate(answer.grasps)
         if grasp.rehearsed
     ]
     if answer.rehearsal is not None and answer.rehearsal.stopped:

@@ -120,7 +120,7 @@ def test_grasps_in_doubt_are_tried_before_they_are_shown(page: Page) -> None:
     page.get_by_role("tab", name="Grasps").click()
     page.get_by_label("Try them first", exact=True).check()
     page.get_by_role("tab", name="Why").click()
-    page.get_by_text(re.compile(r"Tried in simulation before the answer: grasp \d: ")).wait_for()
+    page.get_by_text(re.compile(r"Tried in simulation before the answer: rank \d: ")).wait_for()
 
 
 def test_two_pages_do_not_disturb_each_other(browser: Browser, page: Page, url: str) -> None:

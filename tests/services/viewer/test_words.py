@@ -54,7 +54,7 @@ def test_what_was_tried_in_simulation_is_told(backend: Client) -> None:
     sparge = Sparge(backend.request)
     answer = sparge.grasp(sample_view("saucepan"), "cooking", rehearsal="always").answer
     came = ", ".join(each.replace("_", " ") for each in answer.grasps[0].rehearsed)
-    assert f"*Tried in simulation before the answer: grasp 1: {came}" in answer_in_words(answer)
+    assert f"*Tried in simulation before the answer: rank 0: {came}" in answer_in_words(answer)
     stopped = Rehearsal(tried=0, stopped="stage_unavailable")
     none = tuple(each.model_copy(update={"rehearsed": ()}) for each in answer.grasps)
     words = answer_in_words(answer.model_copy(update={"grasps": none, "rehearsal": stopped}))
