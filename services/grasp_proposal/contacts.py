@@ -119,7 +119,7 @@ def find_contacts(workspace: Workspace, hand: Hand, placed: Placements) -> Conta
         in_focus=seen.in_focus / np.maximum(seen.number, 1),
         left_in_focus=left_side.in_focus,
         right_in_focus=right_side.in_focus,
-        finger_hit=finger_hits(exact, hand, opening, workspace.points),
+        finger_hit=finger_hits(exact, hand, opening, workspace.solid),
         palm_hit=palm_hits(exact, hand, workspace.points),
         empty=seen.number < _LEAST_POINTS,
     )

@@ -35,7 +35,7 @@ def passing(workspace: Workspace, hand: Hand, placed: Placements, rejected: Reje
     def leave_out(reason: str, failed: NDArray[np.bool_]) -> None:
         rejected.counts[reason] += int(failed.sum())
         if rejected.wanted:
-            keep_failed(rejected, reason, failed, hand, placed, contacts, workspace.points)
+            keep_failed(rejected, reason, failed, hand, placed, contacts, workspace.solid)
 
     good = np.ones(len(placed), dtype=np.bool_)
     for reason, failed in failures.items():

@@ -57,13 +57,14 @@ def search(
     counts, reach = rejected.counts, _reach(hand)
     counts["collision_support"] += int((~hands.possible).sum())
     counts["collision_support"] += int((~tried.any(axis=1)).sum())
-    found = _placed(workspace.coarse, points, sample, rotation, tip, tried, reach)
+    surface = np.vstack([workspace.coarse, workspace.floor])
+    found = _placed(surface, points, sample, rotation, tip, tried, reach)
     rows, which = np.nonzero(found.depth >= 0)
     counts["too_wide"] += int((found.fate == TOO_WIDE).sum())
     counts["collision_object"] += int((found.fate == COLLIDES).sum())
     counts["other_depth_better"] += int((found.fate == GOOD).sum()) - len(rows)
     if rejected.wanted:
-        examples = SearchExamples(rejected, workspace.coarse, hand, points, reach)
+        examples = SearchExamples(rejected, surface, hand, points, reach)
         examples.impossible(hands)
         examples.tried(rotation, sample, tip, tried, found)
     return Placements(

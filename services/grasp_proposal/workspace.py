@@ -9,6 +9,7 @@ import numpy as np
 from numpy.typing import NDArray
 
 from services.grasp_proposal.checks import checked_points, checked_superquadrics, checked_viewpoint
+from services.grasp_proposal.hollows import hidden_floor
 from services.grasp_proposal.surface import estimate_normals
 from services.grasp_proposal.thinning import MAX_POINTS, thin
 from shared.geometry.points import bounds, principal_axes
@@ -48,6 +49,8 @@ class Workspace:
         Where grasps are wanted.
     coarse, coarse_normals : (M, 3) arrays
         The same surface with fewer points, for searching.
+    floor : (F, 3) array
+        Of hollows, where a wall hides it (`hidden_floor`).
     obstacles : (K, 3) array
     up : (3,) array or None
     support_offset : float or None
@@ -70,6 +73,7 @@ class Workspace:
     in_focus: Mask
     coarse: Array
     coarse_normals: Array
+    floor: Array
     obstacles: Array
     up: Array | None
     support_offset: float | None
@@ -78,6 +82,11 @@ class Workspace:
     weight: float
     bodies: tuple[Superquadric, ...]
     outer_from_work: Array
+
+    @property
+    def solid(self) -> Array:
+        """Points (S, 3) that no finger may be in: what was seen, and floors that a wall hides."""
+        return np.vstack([self.points, self.floor])
 
     @property
     def believed(self) -> Array:
@@ -132,6 +141,7 @@ def build_workspace(request: ProposeRequest) -> Workspace:
         in_focus=kept_focus,
         coarse=kept[coarse],
         coarse_normals=normals[coarse],
+        floor=hidden_floor(kept[coarse], normals[coarse], up, seen_from).round(_DIGITS),
         obstacles=_near_obstacles(request, work_from_outer, points),
         up=up,
         support_offset=offset,

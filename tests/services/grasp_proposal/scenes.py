@@ -104,3 +104,54 @@ def about_z(angle: float) -> Array:
 def rotations_of(grasps: Array) -> Array:
     """Return rotation matrices (G, 3, 3) of grasp rows (G, 9)."""
     return matrix_from_quaternion(grasps[:, 3:7])
+
+
+PAN = {"radius": 0.1, "wall": 0.006, "height": 0.06, "floor": 0.03}
+"""Of `pan`, metres: `radius` is the inner one, the floor's height is over the table."""
+
+
+def pan(step: float = 0.002) -> Scene:
+    """A pan without a handle, of which the sensor sees what the wall lets it."""
+    radius, wall, height, floor = PAN.values()
+    turn = np.arange(0, 2 * np.pi, step / radius)
+    out = np.column_stack([np.cos(turn), np.sin(turn), np.zeros_like(turn)])
+
+    def ring(radii: Array, heights: Array) -> Array:
+        return np.vstack([r * out + z * UP for r, z in zip(radii, heights, strict=True)])
+
+    outside, inside, across = (
+        np.arange(low, high, step) for low, high in ((0, height), (floor, height), (0, wall))
+    )
+    x, y = (axis.ravel() for axis in np.meshgrid(*[np.arange(-radius, radius, step)] * 2))
+    disc = np.column_stack([x, y, np.full_like(x, floor)])[np.hypot(x, y) < radius]
+    scene = seen(
+        np.vstack(
+            [
+                ring(np.full_like(outside, radius + wall), outside),
+                ring(np.full_like(inside, radius), inside),
+                ring(radius + across, np.full_like(across, height)),
+                disc,
+            ]
+        ),
+        np.vstack(
+            [
+                np.tile(out, (len(outside), 1)),
+                np.tile(-out, (len(inside), 1)),
+                np.tile(UP, (len(out) * len(across) + len(disc), 1)),
+            ]
+        ),
+    )
+    shown = ~behind_the_wall(scene.points)
+    return replace(scene, points=scene.points[shown], normals=scene.normals[shown])
+
+
+def behind_the_wall(points: Array) -> NDArray[np.bool_]:
+    """Say which points (N, 3) in or at the `pan` the near wall of its inside hides."""
+    ray = SENSOR - points
+    a = (ray[:, :2] ** 2).sum(axis=1)
+    b = 2 * (points[:, :2] * ray[:, :2]).sum(axis=1)
+    c = (points[:, :2] ** 2).sum(axis=1) - PAN["radius"] ** 2
+    leaves = (-b + np.sqrt(np.maximum(b**2 - 4 * a * c, 0.0))) / (2 * a)
+    within = np.hypot(points[:, 0], points[:, 1]) < PAN["radius"] + 1e-9
+    over = points[:, 2] + leaves * ray[:, 2]
+    return np.asarray(within & (leaves > 0.01) & (over < PAN["height"]))
