@@ -12,8 +12,9 @@ Array = NDArray[np.float64]
 _RAY = 0.005
 """Width of a fan's rays at the object's distance, metres."""
 _STEP = 0.004
-_GAP, _DROP = 0.008, 0.010
-"""What lies at least this far behind an edge and this far below it is hidden by it in part."""
+_GAP, _LONGEST, _DROP = 0.008, 0.5, 0.010
+"""What lies this far behind an edge, from `_GAP` to `_LONGEST`, and at least `_DROP` below it is
+hidden by it in part. From farther away no hand reaches the edge, and few points are enough."""
 _NEXT_TO = 0.008
 """No farther above the line of sight over the edge begins what the edge hides."""
 _LEVEL = 0.9
@@ -41,13 +42,13 @@ def hidden_floor(points: Array, normals: Array, up: Array | None, viewpoint: Arr
         return np.empty((0, 3))
     from_sensor = points - viewpoint
     height = from_sensor @ up
-    ahead = unit(from_sensor.mean(axis=0))
-    east, north = frame_from_z(up, ahead)[:, :2].T
-    x, y = from_sensor @ east, from_sensor @ north
-    distance = np.hypot(x, y)
+    level = from_sensor - height[:, None] * up
+    distance = np.linalg.norm(level, axis=1)
     if distance.min() < _OVERHEAD:
         return np.empty((0, 3))
-    ray = np.floor(np.arctan2(y, x) * np.median(distance) / _RAY).astype(np.int64)
+    east, north = frame_from_z(up, unit(from_sensor.mean(axis=0)))[:, :2].T
+    azimuth = np.arctan2(level @ north, level @ east)
+    ray = np.floor(azimuth * np.median(distance) / _RAY).astype(np.int64)
     slope = height / distance
     order = np.lexsort((slope, ray))
     edge, floor = order[:-1], order[1:]
@@ -55,16 +56,13 @@ def hidden_floor(points: Array, normals: Array, up: Array | None, viewpoint: Arr
     hidden = (
         (ray[floor] == ray[edge])
         & (gap > _GAP)
+        & (gap < _LONGEST)
         & (height[edge] - height[floor] > _DROP)
         & (normals[floor] @ up > _LEVEL)
         & ((slope[floor] - slope[edge]) * distance[floor] < _NEXT_TO)
     )
     floor, gap = floor[hidden], gap[hidden]
-    counts = np.ceil(gap / _STEP).astype(np.int64)
-    of = np.repeat(np.arange(len(floor)), counts)
-    back = _STEP * (np.arange(len(of)) - np.repeat(np.cumsum(counts) - counts, counts) + 1)
-    keep = back < gap[of]
-    of, back = of[keep], back[keep]
-    away = np.column_stack([x, y])[floor] / distance[floor, None]
-    towards = away[:, :1] * east + away[:, 1:] * north
-    return np.asarray(points[floor][of] - towards[of] * back[:, None])
+    towards_edge = np.arange(_STEP, _LONGEST, _STEP)
+    of, step = np.nonzero(towards_edge < gap[:, None])
+    away = level[floor] / distance[floor, None]
+    return np.asarray(points[floor][of] - away[of] * towards_edge[step, None])

@@ -72,6 +72,14 @@ def test_no_surface_is_taken_to_go_on_that_is_not_level_lower_and_hidden() -> No
     assert not len(hidden_floor(solid.points, solid.normals, UP, SENSOR))
 
 
+@pytest.mark.parametrize(("away", "goes_on"), [(0.3, True), (3.0, False), (5e3, False)])
+def test_no_floor_goes_on_for_longer_than_a_hand_reaches(away: float, goes_on: bool) -> None:
+    edge = np.array([0.0, 0.0, 0.06])
+    sight = (edge - SENSOR) / (edge - SENSOR)[0]
+    points = np.array([edge, edge + away * sight + [0.0, 0.0, 0.001]])
+    assert bool(len(hidden_floor(points, np.tile(UP, (2, 1)), UP, SENSOR))) == goes_on
+
+
 @pytest.mark.parametrize(
     ("up", "viewpoint"), [(None, SENSOR), (UP, None), (UP, np.array([0.0, 0.0, 0.8]))]
 )
